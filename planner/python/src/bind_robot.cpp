@@ -49,15 +49,13 @@ Eigen::Matrix<double, kSize, 1> edges_of(const char* name, const py::object& obj
 void set_body(TravelOptions& travel, const std::string& body, const Eigen::Vector3d& box) {
   const auto shape = planner::body_shape_named(body);
   if (!shape) throw py::value_error("body: '" + body + "', but has to be 'box', 'cylinder' or 'sphere'");
-  const bool wide = box.x() != box.y(), high = box.y() != box.z();
-  const auto refuse = [&](const char* what) {
-    throw py::value_error("box: (" + std::to_string(box.x()) + ", " + std::to_string(box.y()) + ", " +
-                          std::to_string(box.z()) + "), but of a " + what + ", its diameter");
-  };
-  if (*shape == BodyShape::kCylinder && wide) refuse("cylinder x and y have to be equal");
-  if (*shape == BodyShape::kSphere && (wide || high)) refuse("sphere x, y and z have to be equal");
   travel.shape = *shape;
   travel.extents = box;
+  if (planner::axis_unlike_x(travel))
+    throw py::value_error("box: (" + std::to_string(box.x()) + ", " + std::to_string(box.y()) + ", " +
+                          std::to_string(box.z()) + "), but of a " + body +
+                          (*shape == BodyShape::kSphere ? " x, y and z" : " x and y") +
+                          " have to be equal, its diameter");
 }
 
 Self make(const std::string& name, const std::string& motion, const py::object& box, const View& view,

@@ -59,13 +59,9 @@ void check(const TravelOptions& options, double resolution) {
   const auto is = [&](const char* name, int axis) {
     return "travel corridor: " + std::string(name) + " is " + std::to_string(options.extents[axis]) + " m";
   };
-  const auto equals_x = [&](const char* name, int axis) {
-    if (options.extents[axis] != options.extents.x())
-      throw std::invalid_argument(is(name, axis) + ", but of a " + shape + " it has to be extents.x, " +
-                                  std::to_string(options.extents.x()) + " m");
-  };
-  equals_x("extents.y", 1);
-  if (options.shape == BodyShape::kSphere) equals_x("extents.z", 2);
+  if (const auto axis = axis_unlike_x(options))
+    throw std::invalid_argument(is(*axis == 1 ? "extents.y" : "extents.z", *axis) + ", but of a " + shape +
+                                " it has to be extents.x, " + std::to_string(options.extents.x()) + " m");
   if (!(options.box().maxCoeff() / resolution <= detail::kMaxWindow))
     throw std::invalid_argument(is("extents.x", 0) + ", but with its margin a " + shape +
                                 " may be no wider than " + std::to_string(detail::kMaxWindow) +

@@ -60,4 +60,21 @@ Eigen::AlignedBox3d body_of(const TravelOptions& travel) {
           Eigen::Vector3d(half.x(), half.y(), bottom + travel.extents.z())};
 }
 
+std::optional<int> axis_unlike_x(const TravelOptions& travel) {
+  int checked = 0;  // the last axis that has to be like x
+  switch (travel.shape) {
+    case BodyShape::kBox:
+      break;
+    case BodyShape::kCylinder:
+      checked = 1;
+      break;
+    case BodyShape::kSphere:
+      checked = 2;
+      break;
+  }
+  for (int axis = 1; axis <= checked; ++axis)
+    if (travel.extents[axis] != travel.extents.x()) return axis;
+  return std::nullopt;
+}
+
 }  // namespace frontlux::planner

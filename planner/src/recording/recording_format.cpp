@@ -85,10 +85,9 @@ void code_travel(RecordBytes& bytes, TravelOptions& travel) {
   code_motion_and_shape(bytes, travel);
   for (double& extent : travel.extents)
     code_length(bytes, extent, "an extent of the collision box is no length");
-  bytes.require(travel.shape == BodyShape::kBox || travel.extents.x() == travel.extents.y(),
-                "the body is round, but not as long as wide");
-  bytes.require(travel.shape != BodyShape::kSphere || travel.extents.x() == travel.extents.z(),
-                "the body is a sphere, but not as high as wide");
+  const auto unlike = axis_unlike_x(travel);
+  bytes.require(unlike != 1, "the body is round, but not as long as wide");
+  bytes.require(unlike != 2, "the body is a sphere, but not as high as wide");
   bytes.whole(travel.metric, "path metric", PathMetric::kSteps);
   code_length(bytes, travel.margin, "the margin around the body is no length");
   code_finite(bytes, travel.sensor_height, "the sensor's height is not finite");

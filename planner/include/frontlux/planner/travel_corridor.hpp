@@ -132,6 +132,10 @@ struct FRONTLUX_EXPORT TravelOptions {
 /// ground may reach into.
 [[nodiscard]] FRONTLUX_EXPORT Eigen::AlignedBox3d body_of(const TravelOptions& travel);
 
+/// The first axis, 1 for y or 2 for z, along which a body of this shape would have to be as long as along x,
+/// but is not; nothing if there is none.
+[[nodiscard]] FRONTLUX_EXPORT std::optional<int> axis_unlike_x(const TravelOptions& travel);
+
 /// The key of the cell that holds a voxel: the voxel itself, unless cells are nodes.
 [[nodiscard]] FRONTLUX_EXPORT VoxelKey cell_of(const TravelOptions& options, const Lattice& lattice,
                                                const VoxelKey& voxel);
