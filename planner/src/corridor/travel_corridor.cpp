@@ -72,7 +72,7 @@ void check(const TravelOptions& options, double resolution, const KeyBox& bounds
     if (options.node_edge != 0.0) {
       size("node_edge", options.node_edge, 0.0);
       if (options.node_edge < options.extents.maxCoeff())
-        refuse("node_edge is " + std::to_string(options.node_edge) + " m, less than the collision box, " +
+        refuse("node_edge is " + std::to_string(options.node_edge) + " m, less than the body, " +
                std::to_string(options.extents.maxCoeff()) + " m");
     }
   }

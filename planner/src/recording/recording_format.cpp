@@ -83,8 +83,7 @@ void code_motion_and_shape(RecordBytes& bytes, TravelOptions& travel) {
 void code_travel(RecordBytes& bytes, TravelOptions& travel) {
   constexpr std::uint64_t kMostReach = 0xFFFF;  // [voxels]
   code_motion_and_shape(bytes, travel);
-  for (double& extent : travel.extents)
-    code_length(bytes, extent, "an extent of the collision box is no length");
+  for (double& extent : travel.extents) code_length(bytes, extent, "an extent of the body is no length");
   const auto unlike = axis_unlike_x(travel);
   bytes.require(unlike != 1, "the body is round, but not as long as wide");
   bytes.require(unlike != 2, "the body is a sphere, but not as high as wide");

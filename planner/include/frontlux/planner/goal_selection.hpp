@@ -160,7 +160,7 @@ struct TeamMember {
 /// Thread safety: as a standard container. Works in TBB's current arena.
 class FRONTLUX_EXPORT GoalSelection {
  public:
-  /// @param bounds  of all collision boxes, as `TravelCorridor` takes them
+  /// @param bounds  of all stencils, as `TravelCorridor` takes them
   /// @param assign  whether each frontier is assigned to one robot (Alg. 2), else to all that see it
   /// @throws std::invalid_argument naming the robot and the value that is out of bounds
   GoalSelection(std::vector<TeamMember> team, const Lattice& lattice, const KeyBox& bounds,
