@@ -17,7 +17,7 @@ namespace frontlux::sim {
 
 /// The voxels that the box around a robot's body occupies if its sensor is here; of a robot that drives, from
 /// the floor that it stands on, without the voxel of the sensor. Bodies are axis-aligned whatever the yaw,
-/// and take whole voxels. A round body occupies those that it meets at its true shape.
+/// and take whole voxels.
 /// @throws std::invalid_argument if the pose is not finite or the body leaves the lattice's keys
 [[nodiscard]] KeyBox body_voxels(const Lattice& lattice, const planner::Robot& robot,
                                  const planner::Pose& sensor_pose);
