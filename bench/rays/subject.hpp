@@ -40,8 +40,8 @@ struct Subject {
   VoxelGrid grid;
   double grid_seconds = 0;            ///< from the octree to the grid
   std::vector<Contender> contenders;  ///< octomap, fast, embree, grid
-  double look_voxels =
-      0;  ///< that a look all around shows from some place, within 6 m or 60 voxels; the median
+  /// That a look all around shows from some place, within 6 m or 60 voxels; the median.
+  double look_voxels = 0;
   std::unique_ptr<OctreeRayCaster> drop_in;  ///< null unless the map was loaded from a file
 
   /// The caster of this name. @throws std::invalid_argument if there is none

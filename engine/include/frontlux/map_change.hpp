@@ -12,8 +12,8 @@ namespace frontlux {
 /// of what its maker holds, as a rule until the next change: to keep it, copy the grid and the keys.
 struct MapChange {
   const VoxelGrid& grid;  ///< the map as it is now
-  std::span<const VoxelKey> keys =
-      {};  ///< every voxel whose state is not what it was before, sorted; more do no harm
+  /// Every voxel whose state is not what it was before, sorted; more do no harm.
+  std::span<const VoxelKey> keys = {};
 };
 
 /// Every voxel whose state differs between two maps, sorted: the keys of a `MapChange`. Between a grid and

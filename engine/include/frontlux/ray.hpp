@@ -26,8 +26,8 @@ struct VoxelKey {
 struct Ray {
   Eigen::Vector3f origin = Eigen::Vector3f::Zero();     ///< [m]
   Eigen::Vector3f direction = Eigen::Vector3f::Zero();  ///< any length; normalised as OctoMap does, in float
-  double max_range =
-      -1.0;  ///< [m] limit on the distance from origin to voxel *centres*; <= 0 or NaN: no limit
+  /// [m] Limit on the distance from origin to voxel *centres*; <= 0 or NaN: no limit.
+  double max_range = -1.0;
 };
 
 /// A straight line from one point to another, in metres, in the frame of the map.
@@ -59,9 +59,9 @@ struct Hit {
   Occupancy state = Occupancy::kUnknown;          ///< of the voxel in which the ray ended
   VoxelKey key;                                   ///< of that voxel
   Eigen::Vector3f end = Eigen::Vector3f::Zero();  ///< [m] its centre: castRay's `end`, bit for bit
-  Eigen::Vector3f entry =
-      Eigen::Vector3f::Zero();  ///< [m] where the ray enters it (the origin, if it starts inside)
-  float distance = 0.0F;        ///< [m] from origin to `entry`
+  /// [m] Where the ray enters it (the origin, if it starts inside).
+  Eigen::Vector3f entry = Eigen::Vector3f::Zero();
+  float distance = 0.0F;  ///< [m] from origin to `entry`
 
   /// What castRay returns.
   [[nodiscard]] bool occupied() const { return stop == RayStop::kOccupied; }

@@ -36,9 +36,10 @@ struct ExploreSetup {
   planner::SensorModel sensor_model = planner::kOctomapSensorModel;
   planner::ExplorationOptions exploration;
   planner::RecordingHead head;  // with the robots and their starts
-  std::optional<Eigen::Vector3f>
-      given_start;  // [m] in the world's frame before the ground is aligned; so are
-  std::vector<std::optional<planner::Pose>> given_starts;  // those of the robots that are not looked for
+  // [m] In the world's frame before the ground is aligned.
+  std::optional<Eigen::Vector3f> given_start;
+  // In the same frame: of the robots whose starts are not looked for.
+  std::vector<std::optional<planner::Pose>> given_starts;
 };
 
 /// Makes or reads the world, puts the robots at their starts, and checks all options.

@@ -208,8 +208,8 @@ ExplorationStep ContinuousExploration::finish(double time) {
   ExplorationStep step = state.collect(time);
   state.team.update_frontiers(step);
   state.team.count_frontiers(step);
-  state.team.also_changed =
-      state.team.changed;  // a planning that comes all the same brings corridors up to date
+  // A planning that comes all the same brings corridors up to date.
+  state.team.also_changed = state.team.changed;
   ++state.team.number;
   return step;
 }

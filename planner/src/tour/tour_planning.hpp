@@ -108,7 +108,8 @@ class TourPlanning {
   struct Left {
     std::size_t small = 0;   ///< in clusters of too few
     std::size_t unseen = 0;  ///< in others: no robot sees enough of them from where it can get to
-    std::size_t enough = 0;  ///< for a cluster
+    /// How many a cluster has at least.
+    std::size_t enough = 0;
   };
   [[nodiscard]] const Left& left() const { return left_; }
 

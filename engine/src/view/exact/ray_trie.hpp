@@ -43,10 +43,10 @@ class RayTrie {
   struct Sector {
     int bin = 0;                                   ///< of azimuth
     std::uint32_t nodes_begin = 0, nodes_end = 0;  ///< the trie
-    std::uint32_t groups_begin = 0,
-                  groups_end = 0;  ///< the first group has the targets that belong to no other
-    std::uint32_t adjacent =
-        0;  ///< number of its first targets that are next to the viewpoint: they have no node
+    /// The first group has the targets that belong to no other.
+    std::uint32_t groups_begin = 0, groups_end = 0;
+    /// Number of its first targets that are next to the viewpoint: they have no node.
+    std::uint32_t adjacent = 0;
   };
 
   /// The trie of a field of view; nothing if the rays are too many.

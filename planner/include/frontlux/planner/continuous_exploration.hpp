@@ -47,10 +47,9 @@ struct PlannedMotion {
 /// Scans go in when they are taken, trajectories come out; nothing in here waits, reads a clock or starts a
 /// thread. Each robot plans for itself: when it has looked from its goal, when what it was going for has been
 /// mapped by anybody, when its path is blocked, and at least every `ExplorationOptions::period` but on its
-/// way back or aside. It knows the
-/// others' plans: frontiers are assigned to one robot, and a trajectory keeps apart from the bodies of the
-/// others for all time to come. If there is none such, the robot keeps the one it has; it brakes if something
-/// is on that, even where another one would pass, which plans at once then.
+/// way back or aside. It knows the others' plans: frontiers are assigned to one robot, and a trajectory keeps
+/// apart from the bodies of the others for all time to come. If there is none such, the robot keeps the one
+/// it has; it brakes if something is on that, even where another one would pass, which plans at once then.
 ///
 ///     ContinuousExploration exploration(options, std::move(mapping));
 ///     exploration.begin(starts, now());

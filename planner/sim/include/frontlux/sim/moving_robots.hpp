@@ -49,10 +49,10 @@ struct MotionRecord {
 struct PoseErrors {
   static constexpr double kMostTracking = 10.0;  ///< [m]
   double drift = 0.0;                            ///< of the path length, 0 to 1
-  double fix_every =
-      0.0;  ///< [s] after which it knows its place, and is on its trajectory a second later; 0: never
-  double tracking =
-      0.0;  ///< [m] how far it sways at its greatest speed, in proportion when slower; at most 10
+  /// [s] After which it knows its place, and is on its trajectory a second later; 0: never.
+  double fix_every = 0.0;
+  /// [m] How far it sways at its greatest speed, in proportion when slower; at most 10.
+  double tracking = 0.0;
 };
 
 /// Robots that follow trajectories in a simulated world, under a clock that the simulation keeps. Each takes
