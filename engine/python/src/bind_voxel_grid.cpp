@@ -1,14 +1,12 @@
 #include "bindings.hpp"
 
 #include <frontlux/octomap.hpp>
-#include <frontlux/parallel.hpp>
 #include <frontlux/python/arrays.hpp>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <utility>
 

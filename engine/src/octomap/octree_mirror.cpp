@@ -1,7 +1,6 @@
 #include "octomap/octomap_adapter.hpp"
 
 #include <frontlux/floating_point_mode.hpp>
-#include <frontlux/key_box.hpp>
 #include <frontlux/octomap.hpp>
 
 #include <algorithm>

@@ -2,9 +2,7 @@
 
 #include "walk/end_ray.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <optional>
 

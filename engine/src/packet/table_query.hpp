@@ -5,7 +5,6 @@
 #include "packet/single_walk.hpp"
 #include "walk/walk.hpp"
 
-#include <frontlux/key_box.hpp>
 #include <frontlux/ray.hpp>
 #include <frontlux/voxel_grid.hpp>
 

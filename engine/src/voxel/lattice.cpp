@@ -3,7 +3,6 @@
 #include <frontlux/lattice.hpp>
 
 #include <stdexcept>
-#include <string>
 
 namespace frontlux {
 namespace {

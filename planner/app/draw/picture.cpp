@@ -8,7 +8,6 @@
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
-#include <cmath>
 #include <new>
 #include <numbers>
 #include <stdexcept>

@@ -2,7 +2,6 @@
 
 #include "draw/colors.hpp"
 #include "draw/round_length.hpp"
-#include "text.hpp"
 
 #include <algorithm>
 #include <array>

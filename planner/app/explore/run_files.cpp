@@ -9,7 +9,6 @@
 #include <numeric>
 #include <stdexcept>
 #include <system_error>
-#include <utility>
 
 namespace frontlux::app {
 namespace {

@@ -18,7 +18,6 @@
 #include <span>
 #include <system_error>
 #include <thread>
-#include <utility>
 
 namespace frontlux::app {
 namespace {

@@ -3,7 +3,6 @@
 #include "bad_input.hpp"
 #include "text.hpp"
 
-#include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/sim/start_pose.hpp>
 
 #include <algorithm>

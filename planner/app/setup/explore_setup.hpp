@@ -4,7 +4,6 @@
 #include "setup/team.hpp"
 #include "world_source.hpp"
 
-#include <frontlux/io/robot_file.hpp>
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/sim/ground_truth.hpp>
@@ -16,7 +15,6 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace frontlux::app {

@@ -1,7 +1,6 @@
 #include "members.hpp"
 #include "robot_members.hpp"
 
-#include <frontlux/file.hpp>
 #include <frontlux/io/robot_file.hpp>
 
 #include <nlohmann/json.hpp>

@@ -4,9 +4,7 @@
 #include <frontlux/planner/exploration_start.hpp>
 #include <frontlux/planner/goal_search.hpp>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <variant>
 

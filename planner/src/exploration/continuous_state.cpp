@@ -5,8 +5,6 @@
 #include "mapping/sort_once.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace frontlux::planner {

@@ -16,7 +16,6 @@
 #include <frontlux/planner/visible_pairs.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <utility>
 

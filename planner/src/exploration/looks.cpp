@@ -6,7 +6,6 @@
 #include "mapping/sort_once.hpp"
 #include "motion/yaw.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 

@@ -1,7 +1,6 @@
 #include "mapping/conservative_map.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace frontlux::planner::detail {
 

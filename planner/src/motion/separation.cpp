@@ -1,7 +1,6 @@
 #include "motion/separation.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace frontlux::planner::detail {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <frontlux/key_box.hpp>
+#include <frontlux/ray.hpp>
 
 #include <cstdint>
 #include <span>

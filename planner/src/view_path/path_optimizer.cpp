@@ -5,7 +5,6 @@
 
 #include <frontlux/planner/path_optimizer.hpp>
 
-#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string>

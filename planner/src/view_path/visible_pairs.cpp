@@ -1,7 +1,6 @@
 #include <frontlux/planner/visible_pairs.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>

@@ -1,5 +1,4 @@
 #include "world/building.hpp"
-#include "world/furniture.hpp"
 
 #include <algorithm>
 #include <array>
