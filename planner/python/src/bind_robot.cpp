@@ -21,9 +21,8 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 using Self = std::shared_ptr<RobotDescription>;
 using View = std::shared_ptr<FieldOfView>;
 
-constexpr std::size_t kMostRays = std::size_t{1} << 26;
-
-// The bounds are those of robots' files, which docs/robots.md names.
+// The bounds are those of robots' files, which docs/robots.md names, but for yaw rates and angles of view;
+// rays a second have none.
 double within(const char* name, double value, double low, double high, const char* unit) {
   if (!(value >= low && value <= high))
     throw py::value_error(std::string(name) + ": " + py::str(py::float_(value)).cast<std::string>() +
@@ -62,9 +61,9 @@ Self make(const std::string& name, const std::string& motion, const py::object& 
           bool require_ground, const py::object& ground, double step, double slope,
           std::optional<double> min_height, double speed, double acceleration, double yaw_rate, bool per_axis,
           const std::string& body, std::optional<double> node_edge) {
-  constexpr std::size_t kLongestName = 40;
-  if (name.empty() || name.size() > kLongestName)
-    throw py::value_error("name: has to have 1 to 40 bytes in UTF-8");
+  if (name.empty() || name.size() > io::kLongestRobotName)
+    throw py::value_error("name: has to have 1 to " + std::to_string(io::kLongestRobotName) +
+                          " bytes in UTF-8");
   const auto known = planner::motion_named(motion);
   if (!known) throw py::value_error("motion: '" + motion + "', but has to be 'plane', 'ground' or 'space'");
   RobotDescription robot;
@@ -91,9 +90,9 @@ Self make(const std::string& name, const std::string& motion, const py::object& 
   }
   robot.robot.view = *view;
   within("view.max_range", view->max_range, 0.01, 1000.0, "m");
-  if (columns < 1 || rows < 1 || columns > kMostRays || rows > kMostRays / columns)
+  if (columns < 1 || rows < 1 || columns > io::kMostRays || rows > io::kMostRays / columns)
     throw py::value_error("columns, rows: " + std::to_string(columns) + " x " + std::to_string(rows) +
-                          " rays, but there have to be 1 to " + std::to_string(kMostRays));
+                          " rays, but there have to be 1 to " + std::to_string(io::kMostRays));
   robot.columns = columns;
   robot.rows = rows;
   robot.rate = within("rate", rate, 0.01, 10000.0, "scans a second");
