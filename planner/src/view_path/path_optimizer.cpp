@@ -54,7 +54,6 @@ void PathOptimizerOptions::check() const {
   if (max_evaluations <= kReports)
     refuse("max_evaluations is " + std::to_string(max_evaluations) + ", but has to be at least " +
            std::to_string(kReports + 1));
-  check_limit("max_yaw_step", max_yaw_step, " rad");
   check_limit("max_yaw_rate", max_yaw_rate, " rad/m");
 }
 
@@ -95,7 +94,7 @@ OptimizedPath optimize_path(std::span<const Pose> viewpoints, std::span<const Ei
   };
   const auto tangent = tangent_yaws(viewpoints);
   path.tangent = report(tangent);
-  const YawLimits limits(viewpoints, options.max_yaw_step, options.max_yaw_rate);
+  const YawLimits limits(viewpoints, options.max_yaw_rate);
   const auto even = limits.even_turn(tangent.front(), tangent.back());
   const auto nothing_to_climb = no_ascent(gain, options);
   const bool reachable = limits.allows(even);

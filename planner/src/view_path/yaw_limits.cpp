@@ -9,13 +9,12 @@
 
 namespace frontlux::planner {
 
-YawLimits::YawLimits(std::span<const Pose> viewpoints, double max_step, double max_rate) {
+YawLimits::YawLimits(std::span<const Pose> viewpoints, double max_rate) {
   for (std::size_t i = 0; i + 1 < viewpoints.size(); ++i) {
     const double length = (viewpoints[i + 1].position - viewpoints[i].position).norm();
     // Not by a product: no rate limit times no length is not a number.
-    const double by_rate = std::isfinite(max_rate) ? max_rate * length : max_rate;
+    const double step = std::isfinite(max_rate) ? max_rate * length : max_rate;
     // More than half a turn is never needed, and is no limit.
-    const double step = std::min(max_step, by_rate);
     steps_.push_back(step < std::numbers::pi ? step : std::numeric_limits<double>::infinity());
     limited_ = limited_ || std::isfinite(steps_.back());
   }

@@ -12,9 +12,8 @@ class YawLimits {
  public:
   static constexpr double kTolerance = 1e-9;  ///< [rad]
 
-  /// @param max_step [rad]
   /// @param max_rate [rad/m]
-  YawLimits(std::span<const Pose> viewpoints, double max_step, double max_rate);
+  YawLimits(std::span<const Pose> viewpoints, double max_rate);
 
   /// From viewpoint `i` to the next [rad].
   [[nodiscard]] double step(std::size_t i) const { return steps_[i]; }

@@ -93,13 +93,12 @@ TEST(PathOptimizer, KeepsTheLimitsOnTurning) {
     if (trial % 5 == 0) scene.path[1].position = scene.path[0].position;  // no length, no turn by rate
     PathOptimizerOptions options;
     options.start = trial % 3 == 0 ? YawStart::kTangent : YawStart::kGreedy;
-    if (trial % 2 == 0) options.max_yaw_step = random.uniform(0.1, 1.5);
-    if (trial % 2 == 1) options.max_yaw_rate = random.uniform(0.1, 1.5);
+    options.max_yaw_rate = random.uniform(0.1, 1.5);
     const OptimizedPath path = optimize(scene, options);
     double all = 0.0;
     for (std::size_t i = 0; i + 1 < path.yaws.size(); ++i) {
       const double length = (scene.path[i + 1].position - scene.path[i].position).norm();
-      const double limit = trial % 2 == 0 ? options.max_yaw_step : options.max_yaw_rate * length;
+      const double limit = options.max_yaw_rate * length;
       all += limit;
       if (path.end != OptimizationEnd::kLimitsUnreachable) {
         EXPECT_LE(angle_between(path.yaws[i], path.yaws[i + 1]), limit + 2e-9) << trial;
@@ -193,7 +192,7 @@ TEST(PathOptimizer, RefusesBadInput) {
     change(options);
     EXPECT_REFUSED(optimize(scene, options));
   };
-  refused([&](auto& o) { o.max_yaw_step = nan; });
+  refused([&](auto& o) { o.max_yaw_rate = nan; });
   refused([&](auto& o) { o.max_yaw_rate = -1.0; });
   refused([&](auto& o) { o.yaw_bins = 0; });
   refused([&](auto& o) { o.yaw_bins = 64; });
@@ -225,7 +224,7 @@ TEST_F(PathOptimizerFolder, IpoptIsSilentAndReadsNoFile) {
   Random random(9);
   const Scene scene = test::random_scene(random, 8, 200);
   PathOptimizerOptions limited;
-  limited.max_yaw_step = 0.8;
+  limited.max_yaw_rate = 0.8;
   const auto expected = optimize(scene);
   const auto home = std::filesystem::current_path();
   write("ipopt.opt", "print_level 5\nmax_iter 0\noutput_file ipopt.out\n");

@@ -57,7 +57,7 @@ TEST(YawBins, MostViewsIsTheBestOfAllChoicesAndMostDistinctIsNear) {
   for (int trial = 0; trial < 60; ++trial) {
     const Scene scene = test::random_scene(random, 1 + random.below(5), 60, 0.5);
     const std::size_t bins = 1 + static_cast<std::size_t>(random.below(7));
-    const YawLimits limits(scene.path, trial % 2 == 0 ? kInfinity : random.uniform(0.3, 2.0), kInfinity);
+    const YawLimits limits(scene.path, trial % 2 == 0 ? kInfinity : random.uniform(0.25, 1.6));
     const Best best(scene, bins, limits);
     if (best.choices == 0) continue;  // not even the even turn keeps the limits
     limited_trials += limits.limited() ? 1 : 0;
@@ -91,7 +91,7 @@ TEST(YawBins, OfYawsThatSeeAsManyTheNearestToThePathIsChosen) {
     scene.path[i].position = {0.0, 0.4 * static_cast<double>(i), 0.0};
   scene.path.front().yaw = 1.0, scene.path.back().yaw = 2.0;
   const double along = std::numbers::pi / 2;
-  for (const double step : {kInfinity, 0.6})
+  for (const double rate : {kInfinity, 1.5})
     for (const bool seen : {false, true}) {
       scene.frontiers.clear(), scene.list.clear();
       if (seen) {  // by the fifth alone, beside the path
@@ -99,7 +99,7 @@ TEST(YawBins, OfYawsThatSeeAsManyTheNearestToThePathIsChosen) {
         scene.list = {{4, 0}};
       }
       const InformationGain gain = scene.gain();
-      const YawLimits limits(scene.path, step, kInfinity);
+      const YawLimits limits(scene.path, rate);
       const YawBins bins(gain, 24, tangent_yaws(scene.path), limits);
       for (const auto& yaws : {bins.most_views(), bins.most_distinct()}) {
         EXPECT_EQ(test::distinct_by_hand(scene, yaws), seen ? 1U : 0U);

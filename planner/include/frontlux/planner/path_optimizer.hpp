@@ -31,7 +31,6 @@ struct FRONTLUX_EXPORT PathOptimizerOptions {
   bool ascend = true;  ///< along the gradient, with Ipopt; if false, the start is the result
   std::vector<double> sharpness = {8.0, 20.0, 40.0};  ///< one ascent after the other; not empty
   int max_evaluations = 30;  ///< of the differentiable gain, in all; at least 4. Poorer starts need more
-  double max_yaw_step = std::numeric_limits<double>::infinity();  ///< [rad] from one viewpoint to the next
   double max_yaw_rate = std::numeric_limits<double>::infinity();  ///< [rad/m] along the path
 
   /// @throws std::invalid_argument naming the value that is out of bounds
