@@ -1,5 +1,7 @@
 #include "tour/stop_groups.hpp"
 
+#include <frontlux/key_box.hpp>
+
 #include <cmath>
 #include <cstddef>
 #include <map>
