@@ -2,6 +2,8 @@
 
 #include "walk/end_ray.hpp"
 
+#include <frontlux/key_box.hpp>
+
 #include <array>
 #include <numeric>
 #include <optional>
