@@ -29,7 +29,7 @@ namespace {
 constexpr int kBadInput = 2, kFailure = 1;
 
 int complain(const std::string& message, int code) {
-  std::cerr << frontlux::app::in_red("frontlux: " + frontlux::app::without_controls(message), STDERR_FILENO)
+  std::cerr << frontlux::app::in_red("frontlux: " + frontlux::app::on_one_line(message), STDERR_FILENO)
             << '\n';
   return code;
 }
@@ -56,7 +56,10 @@ std::string describe(const CLI::ParseError& error, const CLI::App& app) {
   const auto commands = app.get_subcommands();
   if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr)
     return error.what() + std::string("; give true or false");  // all but flags are read by ourselves
-  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && strays.empty()) return error.what();
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && strays.empty()) {
+    const std::string what = error.what();
+    return what + (what.find("At Most 1") != std::string::npos ? "; give the option once" : "");
+  }
   if (strays.empty() && commands.empty()) return "give a command";
   if (strays.empty()) {
     const bool both = dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr;

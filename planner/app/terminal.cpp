@@ -28,6 +28,11 @@ std::string without_controls(std::string text) {
   return text;
 }
 
+std::string on_one_line(std::string text) {
+  std::ranges::replace(text, '\n', '?');
+  return without_controls(std::move(text));
+}
+
 std::string in_red(const std::string& text, int stream) {
   const char* const no_color = std::getenv("NO_COLOR");
   if (::isatty(stream) == 0 || (no_color != nullptr && *no_color != '\0')) return text;
@@ -35,7 +40,7 @@ std::string in_red(const std::string& text, int stream) {
 }
 
 void warn(const std::string& text) {
-  std::cerr << in_red("frontlux: warning: " + without_controls(text), STDERR_FILENO) << '\n';
+  std::cerr << in_red("frontlux: warning: " + on_one_line(text), STDERR_FILENO) << '\n';
 }
 
 bool is_open_to_write(int stream) {

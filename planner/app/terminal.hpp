@@ -12,6 +12,8 @@ namespace frontlux::app {
 /// A text with `?` in the place of bytes that terminals take for commands, for names from files that nobody
 /// has looked at. Lines stay.
 [[nodiscard]] std::string without_controls(std::string text);
+/// The same, with `?` in the place of new lines, too: a name may hold one.
+[[nodiscard]] std::string on_one_line(std::string text);
 
 /// A text that a terminal shows in red; as it is if the stream is no terminal, or the environment has
 /// NO_COLOR.

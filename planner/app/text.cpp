@@ -1,5 +1,7 @@
 #include "text.hpp"
 
+#include "terminal.hpp"
+
 #include <frontlux/file.hpp>
 
 #include <algorithm>
@@ -61,7 +63,8 @@ std::string row(std::string_view label, std::string_view value) {
   constexpr std::size_t kWidth = 13;
   std::string line(label);
   line.resize(std::max(kWidth, line.size() + 1), ' ');
-  return line.append(value) + '\n';
+  // Names of files may hold anything.
+  return without_controls(line.append(value)) + '\n';
 }
 
 }  // namespace frontlux::app

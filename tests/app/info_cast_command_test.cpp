@@ -332,7 +332,7 @@ TEST_F(InfoCastCommand, RefusesWrongNumbers) {
   for (const std::string range : {"0", "-1", "nan", "inf", "-inf", "1e999", "1m", "ten", "", "--json"})
     expect_refused(cast({"--from", "0,0,0", "--to", "1,0,0", "--range", range}),
                    {"--range: '" + range + "' is not a number above 0"});
-  expect_refused(cast({"--from", "0,0,0", "--direction", "0,-0,0"}), {"--direction: 0, -0, 0 has no length"});
+  expect_refused(cast({"--from", "0,0,0", "--direction", "0,-0,0"}), {"--direction: 0, -0, 0 in single precision, which has no length"});
   expect_refused(cast({"--from", "1,0,0", "--to", "1,0,0"}), {"--to: 1, 0, 0 is the point of --from"});
 }
 

@@ -46,9 +46,10 @@ TEST_F(WorldCommand, WritesWhatTheLibraryMakes) {
 }
 
 TEST_F(WorldCommand, MeasuresABox) {
-  expect_answer({box("box.ply")}, {"size         4 x 5 x 6 m, 4998 voxels of 0.3 m\n",
-                                   "bounds x     0 to 4 m\n", "triangles    12\n", "surface      148 m^2\n",
-                                   "free         0 m^3, of 120 m^3", "start        none"});
+  expect_answer(
+      {box("box.ply")},
+      {"size         4 x 5 x 6 m, 4998 voxels of 0.3 m\n", "bounds x     0 to 4 m\n", "triangles    12\n",
+       "surface      148 m^2\n", "free         not known: the surface faces outwards", "start        none"});
   expect_answer({path("box.ply"), "--scale", "0.5", "--up", "y"},
                 {"size         2 x 3 x 2.5 m", "y     -3 to 0 m"});
 }
@@ -145,6 +146,15 @@ TEST_F(WorldCommand, RefusesATooLargeMapByItsBounds) {
   expect_refused({map},
                  {"giant.bt: 819.3 x 819.3 x 819.3 m are", "too many: a map holds at most 2147483648"});
   expect_refused({map, "--resolution", "5"}, {"giant.bt: the map's occupied voxels have more than"});
+}
+
+TEST_F(WorldCommand, ComplainsOnOneLineWhateverAFileIsCalled) {
+  const test::Answer answer = run({path("a\nb\x1b[31m.ply")});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_EQ(std::ranges::count(answer.err, '\n'), 1) << answer.err;
+  EXPECT_NE(answer.err.find("a?b?[31m.ply"), std::string::npos) << answer.err;
+  box("c\x1b[31m.ply");
+  expect_answer({path("c\x1b[31m.ply")}, {"c?[31m.ply"});
 }
 
 TEST_F(WorldCommand, RefusesAbsurdSizesAndWarnsOfLargeOnes) {

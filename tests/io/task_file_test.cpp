@@ -206,6 +206,7 @@ TEST_F(TaskFile, SaysWhatIsWrongAndWhatToDo) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {with(R"("world": "office.ply", )", ""), "world is missing; give a file relative to the task's folder"},
       {with(R"("office.ply")", "3"), "world is 3; give a file"},
+      {with(R"("office.ply")", R"("a\u0000b")"), "world holds a NUL character; give a file"},
       {with(R"("office")", R"("")"), "name is ''; give 1 to 255 characters"},
       {with(R"("office")", R"("a\nb")"), "name is 'a?b'; give 1 to 255 characters"},
       {with(R"("seed": 7)", R"("seed": -7)"), "seed is -7; give a whole number from 0"},

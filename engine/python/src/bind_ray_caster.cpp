@@ -258,7 +258,7 @@ RayStop.INVALID. Work is spread over all cores. Queries may run in several threa
            py::arg("unknown") = "block", py::arg("out") = py::none(),
            R"(Where each ray ends.
 
-origins, directions: (..., 3) or (3,); directions of any length. max_range: [m] number or (...), <= 0: no limit; it
+origins, directions: (..., 3) or (3,); directions of any length. max_range: [m] number or (...), <= 0 or NaN: no limit; it
 limits the distance from origin to the centres of voxels.
 
 Returns a dict of arrays:

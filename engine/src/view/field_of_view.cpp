@@ -32,7 +32,7 @@ void FieldOfView::check() const {
   }
   if (!(max_range > 0.0 && std::isfinite(max_range)))
     throw std::invalid_argument("field of view: max_range is " + std::to_string(max_range) +
-                                " m, but has to be positive");
+                                " m, but has to be positive and finite");
 }
 
 TurnedView::TurnedView(const FieldOfView& view, double yaw)

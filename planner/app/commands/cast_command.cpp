@@ -50,7 +50,7 @@ void check_inside(const Lattice& lattice, std::string_view name, const Eigen::Ve
 Answer cast(const CastOptions& options) {
   if (options.direction && options.direction->isZero(0.F))
     throw BadInput("--direction: " + to_text(*options.direction) +
-                   " has no length; give a number other than 0");
+                   " in single precision, which has no length; give a number other than 0");
   if (options.to == options.from)
     throw BadInput("--to: " + to_text(*options.to) +
                    " is the point of --from; give another, or a --direction");
@@ -152,7 +152,8 @@ void add_cast_command(CLI::App& app) {
   command.group("Ray");
   command.add("--from", options->from, "X,Y,Z", "Origin").required();
   Option to = command.add("--to", options->to, "X,Y,Z", "A point to aim at; the ray may pass it");
-  Option direction = command.add("--direction", options->direction, "X,Y,Z", "Direction, of any length");
+  Option direction =
+      command.add("--direction", options->direction, "X,Y,Z", "Direction, of any length that a float has");
   command.require_one(to, direction);
   command.add("--range", options->range, "METRES", "Longest distance to a voxel's centre [no limit]",
               kAboveZero);

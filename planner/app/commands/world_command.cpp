@@ -38,6 +38,9 @@ std::string free_volume_text(const sim::World& world) {
   // A surface that faces inwards, towards free space, holds just that.
   const double free = *solid >= 0.0 ? world.bounds.volume() - *solid : -*solid;
   if (free < 0.0) return "not known: solids overlap";
+  constexpr double kFilled = 1e-6;  // of the bounds
+  if (free <= kFilled * world.bounds.volume())
+    return "not known: the surface faces outwards, as that of a solid that fills the bounds";
   return rounded(free) + " m^3, of " + rounded(world.bounds.volume()) + " m^3 within the bounds";
 }
 

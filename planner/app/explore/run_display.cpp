@@ -106,7 +106,7 @@ void RunDisplay::result(const RunResult& result, const std::optional<RunEnd>& en
     print_summary(result, end);
   if (!run_.json) give_up_broken_output();  // the result is in the folder
   for (const std::string& warning : result.warnings)
-    std::cerr << in_red("warning: " + without_controls(warning), STDERR_FILENO) << '\n';
+    std::cerr << in_red("warning: " + on_one_line(warning), STDERR_FILENO) << '\n';
 }
 
 void RunDisplay::print_summary(const RunResult& result, const std::optional<RunEnd>& end) const {

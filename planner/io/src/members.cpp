@@ -133,6 +133,8 @@ const json& Members::get(const std::string& name, const std::string& wanted) {
 std::string Members::text(const std::string& name, const std::string& wanted) {
   const json& value = get(name, wanted);
   if (!value.is_string()) refuse_value(name, value, wanted);
+  if (value.get_ref<const std::string&>().find('\0') != std::string::npos)  // the end of any file's name
+    refuse(name, "holds a NUL character", "give " + wanted);
   return value.get<std::string>();
 }
 

@@ -38,8 +38,13 @@ struct BodyStencil::RoundBody {
   // How many layers of a column the body reaches, from its middle up; of a cylinder 0 or 1.
   [[nodiscard]] int layers(int x, int y) const {
     const double side = std::hypot(distance_to(x), distance_to(y)), within = radius - detail::kSlack;
-    int count = 0;
-    while (std::hypot(side, distance_to(count)) < within && (sphere || count == 0)) ++count;
+    const auto reaches = [&](int layer) { return std::hypot(side, distance_to(layer)) < within; };
+    int count = reaches(0) ? 1 : 0;
+    if (sphere && count > 0) {  // about so many, since rounding may be for one more or less
+      count = std::max(1, static_cast<int>(std::sqrt(std::max(0.0, within * within - side * side))));
+      while (reaches(count)) ++count;
+      while (count > 1 && !reaches(count - 1)) --count;
+    }
     return x == 0 && y == 0 ? std::max(count, 1) : count;
   }
   // The distance of the nearest voxel of a column that it does not reach.

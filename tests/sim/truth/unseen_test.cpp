@@ -75,6 +75,16 @@ TEST(Unseen, IsInViewOfARobotThatStartsBesideAWall) {
   }
 }
 
+// A margin of which the room at the start alone would be 10^9 voxels.
+TEST(Unseen, LooksAtTheWorldOnlyHoweverWideAMargin) {
+  planner::Robot wide = robot(0.5);
+  wide.travel.margin = 100.0;
+  const GroundTruth truth(divided_room(0.9F), kResolution, kStart.position);
+  const Unseen unseen = explain_unseen(truth, VoxelGrid(kResolution), {{wide}}, {{kStart}});
+  EXPECT_EQ(unseen.in_view, 0.0);
+  EXPECT_NEAR(sum(unseen), 1.0, 1e-9);
+}
+
 // Only what the map does not know counts.
 TEST(Unseen, CountsWhatTheMapLacks) {
   VoxelGrid map(kResolution);

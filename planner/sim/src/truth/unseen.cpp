@@ -29,18 +29,22 @@ constexpr double kSpacing = 0.3;         // [m] of the cells that robots look fr
 constexpr int kStepsPerMetre = 20;       // by which bodies are made smaller
 constexpr double kAnyHeight = -1e6;      // [m] as a minimum height
 
-// What has to be free around robots at their starts.
-std::set<VoxelKey> room_at_starts(const Lattice& lattice, std::span<const planner::Robot> robots,
+// What has to be free around robots at their starts, as far as it is in the world: a margin may reach far
+// beyond.
+std::set<VoxelKey> room_at_starts(const GroundTruth& truth, std::span<const planner::Robot> robots,
                                   std::span<const planner::Pose> starts) {
+  const Lattice& lattice = truth.lattice();
   std::set<VoxelKey> room;
   for (std::size_t r = 0; r < robots.size(); ++r) {
     planner::TravelOptions by_voxels = robots[r].travel;
     by_voxels.node_edge = 0.0;
     const planner::BodyStencil stencil(by_voxels, lattice.resolution());
-    if (const auto at = lattice.key(starts[r].position))
-      for_each_key(stencil.box_around(*at), [&](const VoxelKey& key) {
-        if (stencil.contains(*at, key)) room.insert(key);
-      });
+    const auto at = lattice.key(starts[r].position);
+    const auto box = at ? intersection(stencil.box_around(*at), truth.bounds()) : std::nullopt;
+    if (!box) continue;
+    for_each_key(*box, [&](const VoxelKey& key) {
+      if (stencil.contains(*at, key)) room.insert(key);
+    });
   }
   return room;
 }
@@ -214,7 +218,7 @@ Unseen explain_unseen(const GroundTruth& truth, const VoxelGrid& map, std::span<
   if (map.resolution() != resolution)
     throw std::invalid_argument("unseen voxels: the map has voxels of " + std::to_string(map.resolution()) +
                                 " m, the ground truth of " + std::to_string(resolution) + " m");
-  const VoxelGrid grid = map_of(truth, room_at_starts(truth.lattice(), robots, starts));
+  const VoxelGrid grid = map_of(truth, room_at_starts(truth, robots, starts));
   Sample sample = sample_of_unseen(truth, map);
   if (sample.targets.empty()) return {};
   const Sights sights(truth, grid);
