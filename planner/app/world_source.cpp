@@ -168,10 +168,13 @@ SourcedWorld make_world(const WorldSource& source) {
     }
     if (source.box) {
       sourced.world.bounds = *source.box;
+      constexpr double kRounding = 1e-4;  // [m] of a mesh's floats, which may lie in the box's faces
+      const Eigen::Array3d room = Eigen::Array3d::Constant(kRounding);
+      const Eigen::AlignedBox3d within(source.box->min().array() - room, source.box->max().array() + room);
       const double all = sim::surface_area(sourced.world.mesh);
       if (all > 0.0)
         sourced.out_of_bounds =
-            std::clamp(1.0 - sim::surface_area(sourced.world.mesh, *source.box) / all, 0.0, 1.0);
+            std::clamp(1.0 - sim::surface_area(sourced.world.mesh, within) / all, 0.0, 1.0);
     } else if (sourced.kind != WorldKind::kMap)
       count(sourced.world.bounds);
     const auto& own = sourced.world.start;

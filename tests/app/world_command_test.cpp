@@ -164,7 +164,7 @@ TEST_F(WorldCommand, RefusesAbsurdSizesAndWarnsOfLargeOnes) {
       {"4000 x 5000 x 6000 m", "e+12 voxels", "at most 536800000 of a file so small", "--scale", "box_m"});
   EXPECT_FALSE(std::filesystem::exists(path("out.ply")));
   expect_answer({path("mm.ply"), "--scale", "0.001"}, {"4 x 5 x 6 m"});
-  const test::Answer large = run({path("mm.ply"), "--scale", "0.05"});  // 200 x 250 x 300 m
+  const test::Answer large = run({path("mm.ply"), "--scale", "0.04"});  // 160 x 200 x 240 m
   EXPECT_EQ(large.code, 0);
   EXPECT_TRUE(large.err.starts_with("frontlux: warning: ")) << large.err;
   test::expect_parts(large.err, {"voxels of 0.3 m", "--scale"});

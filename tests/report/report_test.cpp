@@ -71,8 +71,7 @@ TEST_F(ReportTest, TakesFromRunJsonWhatTheRecordingLacks) {
   recording.end = "low_gain";
   recording.head.robots[1].robot.name = "fly\xff";
   const std::string ugv = recording.head.robots[0].robot.name, fly = "fly\xef\xbf\xbd";
-  const nlohmann::json unseen = {
-      {"in_view", 0.25}, {"narrow", 0.125}, {"hidden", 0}, {"surface_out_of_bounds", 0.5}};
+  const nlohmann::json unseen = {{"in_view", 0.25}, {"narrow", 0.125}, {"hidden", 0}};
   const nlohmann::json map = {{"false_free", 0.5}, {"false_occupied", 0.0625}, {"surface_found", 1}};
   const nlohmann::json why = {{"narrow_by_m", 0.15}, {"in_view_then", 0.1}, {"without_min_height", 0.05}};
   const nlohmann::json whole = {
@@ -83,6 +82,7 @@ TEST_F(ReportTest, TakesFromRunJsonWhatTheRecordingLacks) {
       {"clearance_min_m", 0.125},
       {"separation_min_m", nullptr},
       {"contacts_in_free", 3},
+      {"surface_out_of_bounds", 0.5},
       {"warnings", {"it ended; early", "it was late"}},
       {"unseen", unseen},
       {"unseen_why", {{ugv, {{"narrow_by_m", nullptr}, {"in_view_then", 0}}}, {fly, why}}},
@@ -96,6 +96,7 @@ TEST_F(ReportTest, TakesFromRunJsonWhatTheRecordingLacks) {
   EXPECT_EQ(measured(whole.dump()), (nlohmann::json{{"clearance_min_m", 0.125},
                                                     {"separation_min_m", nullptr},
                                                     {"contacts_in_free", 3},
+                                                    {"surface_out_of_bounds", 0.5},
                                                     {"warnings", {"it ended; early", "it was late"}},
                                                     {"unseen", unseen},
                                                     {"map", map},
@@ -117,7 +118,8 @@ TEST_F(ReportTest, TakesFromRunJsonWhatTheRecordingLacks) {
   EXPECT_EQ(measured(odd.dump())["robots"][0]["idle_s"], nullptr);
   EXPECT_EQ(measured(odd.dump())["robots"][0]["goal"], "");
   // What an older frontlux did not write, and values that are none, are unknown.
-  const std::array kNewer = {"contacts_in_free", "warnings", "unseen", "unseen_why", "map"};
+  const std::array kNewer = {
+      "contacts_in_free", "surface_out_of_bounds", "warnings", "unseen", "unseen_why", "map"};
   nlohmann::json older = whole;
   for (const char* name : kNewer) older.erase(name);
   for (auto& robot : older["by_robot"]) robot.erase("goal");

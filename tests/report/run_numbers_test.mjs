@@ -87,18 +87,18 @@ const RUN = [
 const ofRobot = (numbers, goal = "") => ({ idle_s: null, held_back: null, narrow_by_m: null, in_view_then: null, without_min_height: null, ...numbers, goal });
 { // What only run.json knows; what it does not know is NaN, or no text.
   const measured = {
-    clearance_min_m: 0.125, separation_min_m: null, contacts_in_free: 2, warnings: [], unseen: { in_view: 0.01, narrow: 0.25, hidden: 0, surface_out_of_bounds: 0.5 }, map: { false_free: 0.02, false_occupied: null, surface_found: 0.9 },
+    clearance_min_m: 0.125, separation_min_m: null, contacts_in_free: 2, warnings: [], surface_out_of_bounds: 0.5, unseen: { in_view: 0.01, narrow: 0.25, hidden: 0 }, map: { false_free: 0.02, false_occupied: null, surface_found: 0.9 },
     robots: [ofRobot({ idle_s: 1.5, held_back: 0, narrow_by_m: 0.15, in_view_then: 0.2, without_min_height: 0.01 }, "no goal"), ofRobot({ held_back: 3, in_view_then: 0 })],
   };
   const result = (options, facts) => numbersOf(factsOf(RUN, { options: JSON.stringify(options), ...facts })).result;
   const shown = result({ lockstep: false, latency: 0.25 }, { measured });
   assert.deepEqual([shown.latency, shown.clearance, shown.separation, shown.idle, shown.heldBack, shown.bumpers], [0.25, 0.125, NaN, [1.5, NaN], [0, 3], true]);
-  assert.deepEqual([shown.contactsInFree, shown.unseen, shown.map], [2, { inView: 0.01, narrow: 0.25, hidden: 0, outOfBounds: 0.5 }, { falseFree: 0.02, falseOccupied: NaN, surfaceFound: 0.9 }]);
+  assert.deepEqual([shown.contactsInFree, shown.outOfBounds, shown.unseen, shown.map], [2, 0.5, { inView: 0.01, narrow: 0.25, hidden: 0 }, { falseFree: 0.02, falseOccupied: NaN, surfaceFound: 0.9 }]);
   assert.deepEqual([shown.narrowBy, shown.inViewThen, shown.withoutMinHeight, shown.goals], [[0.15, NaN], [0.2, 0], [0.01, NaN], ["no goal", ""]]);
   for (const facts of [{ measured: null }, {}]) {
     const none = result({ bumper: false }, facts);
     assert.deepEqual([none.clearance, none.contactsInFree, none.idle, none.narrowBy, none.goals, none.bumpers], [NaN, NaN, [NaN, NaN], [NaN, NaN], ["", ""], false]);
-    assert.deepEqual([none.unseen, none.map], [{ inView: NaN, narrow: NaN, hidden: NaN, outOfBounds: NaN }, { falseFree: NaN, falseOccupied: NaN, surfaceFound: NaN }]);
+    assert.deepEqual([none.outOfBounds, none.unseen, none.map], [NaN, { inView: NaN, narrow: NaN, hidden: NaN }, { falseFree: NaN, falseOccupied: NaN, surfaceFound: NaN }]);
   }
   // Its warnings say why; without any, what the recording tells is enough to warn.
   const said = (list, other) => {
@@ -125,18 +125,18 @@ const ofRobot = (numbers, goal = "") => ({ idle_s: null, held_back: null, narrow
     const facts = factsOf(RUN, { world: "room", bounds: [], robots: robots.map((robot, r) => ({ ...robot, plane: plane || r === 0 })), measured });
     return { name: "run", facts, numbers: numbersOf(facts) };
   };
-  const known = { in_view: 0.0123, narrow: 0.25, hidden: 0, surface_out_of_bounds: 0.4 };
+  const known = { in_view: 0.0123, narrow: 0.25, hidden: 0 };
   const full = {
-    clearance_min_m: null, separation_min_m: null, contacts_in_free: null, warnings: [], unseen: known, map: { false_free: 0.02, false_occupied: 0, surface_found: 0.9 },
+    clearance_min_m: null, separation_min_m: null, contacts_in_free: null, warnings: [], surface_out_of_bounds: 0.4, unseen: known, map: { false_free: 0.02, false_occupied: 0, surface_found: 0.9 },
     robots: [ofRobot({ narrow_by_m: 0.15, in_view_then: 0.2, without_min_height: 0 }, "no goal"), ofRobot({ in_view_then: 0, without_min_height: 0.05 })],
   };
-  const bare = { ...full, unseen: { in_view: null, narrow: null, hidden: null, surface_out_of_bounds: null }, map: { false_free: null, false_occupied: null, surface_found: null }, robots: [ofRobot({}), ofRobot({})] };
+  const bare = { ...full, surface_out_of_bounds: null, unseen: { in_view: null, narrow: null, hidden: null }, map: { false_free: null, false_occupied: null, surface_found: null }, robots: [ofRobot({}), ofRobot({})] };
   globalThis.document = { createElement: element };
   const shown = details(runOf(full), "1"), row = (blocks, caption, name) => rowsOf(blocks, caption).find(([head]) => head === name)?.slice(1);
   assert.deepEqual(row(shown, "The run", "Unseen"), ["25.0 % of the observable space where only smaller robots, or those that fly, see it, 0.0 % hidden from everywhere, 1.2 % that the robots could have seen"]);
   assert.match(row(details(runOf(full, false), "1"), "The run", "Unseen")[0], /only smaller robots see it/);
   assert.deepEqual(row(shown, "The run", "Out of bounds"), ["40.0 % of the world's surface lies outside what is explored"]);
-  assert.equal(row(details(runOf({ ...full, unseen: { ...known, surface_out_of_bounds: 0 } }), "1"), "The run", "Out of bounds"), undefined);
+  assert.equal(row(details(runOf({ ...full, surface_out_of_bounds: 0 }), "1"), "The run", "Out of bounds"), undefined);
   assert.deepEqual(row(shown, "The run", "Accuracy of the map"), ["90.0 % of the surface voxels are occupied, 2.0 % of the free voxels hold a surface, 0.0 % of the occupied ones are in free space"]);
   assert.deepEqual(row(shown, "The team", "openings too narrow"), ["by 0.15 m, 20.0 % behind them", "a smaller body does not help"]);
   assert.deepEqual(row(shown, "The team", "in view without minimum height"), ["0.0 %", "5.0 %"]);

@@ -54,7 +54,7 @@ function factsOf(steps, robots) {
     observable: 1000, bounding: 2000, options: '{"lockstep": false, "robots": {"a": [1, 2]}}', end: "low_gain", truncated: false,
     phases: ["frontiers", "goals", "moving"],
     measured: {
-      clearance_min_m: 0.25, separation_min_m: null, contacts_in_free: 0, warnings: ["too little"], unseen: { in_view: 0.01, narrow: 0.1, hidden: 0, surface_out_of_bounds: 0 }, map: { false_free: 0.02, false_occupied: null, surface_found: 0.9 },
+      clearance_min_m: 0.25, separation_min_m: null, contacts_in_free: 0, warnings: ["too little"], surface_out_of_bounds: 0, unseen: { in_view: 0.01, narrow: 0.1, hidden: 0 }, map: { false_free: 0.02, false_occupied: null, surface_found: 0.9 },
       robots: list(robots, (r) => ({ idle_s: 1.5, held_back: r, narrow_by_m: 0.15, in_view_then: 0.06, without_min_height: 0, goal: "no goal" })),
     },
     robots: list(robots, (r) => ({ name: `robot ${r}`, plane: r === 0, extents: [1, 1, 0.5], sensor_height: 0.7, shape: "cone", horizontal: 1, vertical: 1, max_range: 9, columns: 16, rows: 8, colors: ["#0072b2", "#56b4e9"], start: [0, 0, 1, 0] })),

@@ -87,9 +87,9 @@ json numbers_in(const json& object, std::initializer_list<const char*> names) {
 json measured_of(const std::string& run_json, const planner::Recording& recording) {
   if (run_json.empty() || !misfit(run_json, recording).empty()) return nullptr;
   const json all = json::parse(run_json, nullptr, false);
-  json measured = numbers_in(all, {"clearance_min_m", "separation_min_m", "contacts_in_free"});
-  measured["unseen"] =
-      numbers_in(member(all, "unseen"), {"in_view", "narrow", "hidden", "surface_out_of_bounds"});
+  json measured =
+      numbers_in(all, {"clearance_min_m", "separation_min_m", "contacts_in_free", "surface_out_of_bounds"});
+  measured["unseen"] = numbers_in(member(all, "unseen"), {"in_view", "narrow", "hidden"});
   measured["map"] = numbers_in(member(all, "map"), {"false_free", "false_occupied", "surface_found"});
   measured["warnings"] = json::array();
   if (const json& warnings = member(all, "warnings"); warnings.is_array())

@@ -129,7 +129,7 @@ export function details(run, written) {
       ["Observable", facts.observable > 0 ? `${whole(facts.observable)} voxels` : "unknown"],
       ["Coverage", `${percent(result.coverage)} of the observable space, ${percent(result.coverageBox)} of the box`],
       ...(anyKnown(unseen) ? [["Unseen", `${percent(unseen.narrow)} of the observable space where only ${smallerRobots(facts)} see it, ${percent(unseen.hidden)} hidden from everywhere, ${percent(unseen.inView)} that the robots could have seen`]] : []),
-      ...(unseen.outOfBounds > 0 ? [["Out of bounds", `${percent(unseen.outOfBounds)} of the world's surface lies outside what is explored`]] : []),
+      ...(result.outOfBounds > 0 ? [["Out of bounds", `${percent(result.outOfBounds)} of the world's surface lies outside what is explored`]] : []),
       ["Explored volume", cubicMetres(result.volume)],
       ...(anyKnown(map) ? [["Accuracy of the map", `${percent(map.surfaceFound)} of the surface voxels are occupied, ${percent(map.falseFree)} of the free voxels hold a surface, ${percent(map.falseOccupied)} of the occupied ones are in free space`]] : []),
       ["Robots", numbers.motion ? "in motion: each plans for itself while it moves" : "in lock-step: all plan, then all move"],

@@ -9,7 +9,7 @@ const FACTS = {
   phases: [""], robots: [ROBOT], steps: [STEP],
 };
 const MEASURED = { // null without a run.json
-  clearance_min_m: 0, separation_min_m: 0, contacts_in_free: 0, warnings: [""], unseen: { in_view: 0, narrow: 0, hidden: 0, surface_out_of_bounds: 0 }, map: { false_free: 0, false_occupied: 0, surface_found: 0 },
+  clearance_min_m: 0, separation_min_m: 0, contacts_in_free: 0, warnings: [""], surface_out_of_bounds: 0, unseen: { in_view: 0, narrow: 0, hidden: 0 }, map: { false_free: 0, false_occupied: 0, surface_found: 0 },
   robots: [{ idle_s: 0, held_back: 0, narrow_by_m: 0, in_view_then: 0, without_min_height: 0, goal: "" }],
 };
 
