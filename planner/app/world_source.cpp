@@ -25,13 +25,19 @@ constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 31;
 // Of a mesh of up to 100 kB, and in proportion of larger ones: a few bytes may stand for any space.
 constexpr std::uint64_t kMostOfSmallMesh = std::uint64_t{1} << 29, kSmallMesh = 100'000;
 
-std::uint64_t most_voxels(const WorldSource& source, WorldKind kind) {
-  if (source.box || kind != WorldKind::kMesh) return kMostVoxels;
-  std::error_code gone;
-  const std::uintmax_t bytes = std::filesystem::file_size(source.world, gone);
-  if (gone) return kMostOfSmallMesh;
-  return std::clamp(bytes, std::uintmax_t{kSmallMesh}, std::uintmax_t{4 * kSmallMesh}) *
-         (kMostOfSmallMesh / kSmallMesh);
+// By what the mesh holds: its file may refer to others.
+std::uint64_t most_voxels(const sim::TriangleMesh& mesh) {
+  const std::uint64_t bytes =
+      mesh.vertices.size() * sizeof(mesh.vertices[0]) + mesh.triangles.size() * sizeof(mesh.triangles[0]);
+  return std::clamp(bytes, kSmallMesh, 4 * kSmallMesh) * (kMostOfSmallMesh / kSmallMesh);
+}
+
+double part_outside(const sim::TriangleMesh& mesh, const Eigen::AlignedBox3d& box) {
+  constexpr double kRounding = 1e-4;  // [m] of a mesh's floats, which may lie in the box's faces
+  const Eigen::Array3d room = Eigen::Array3d::Constant(kRounding);
+  const Eigen::AlignedBox3d within(box.min().array() - room, box.max().array() + room);
+  const double all = sim::surface_area(mesh);
+  return all > 0.0 ? std::clamp(1.0 - sim::surface_area(mesh, within) / all, 0.0, 1.0) : 0.0;
 }
 
 WorldKind kind_of(const std::string& name) {
@@ -78,7 +84,9 @@ sim::World make_map_world(const std::string& file, const VoxelGrid& grid) {
 }
 
 // What a map of the world would hold; refused before anybody tries.
-double count_voxels(const WorldSource& source, const Eigen::AlignedBox3d& bounds, WorldKind kind) {
+// @param most  that it may hold
+double count_voxels(const WorldSource& source, const Eigen::AlignedBox3d& bounds, WorldKind kind,
+                    std::uint64_t most) {
   const double voxels = sim::voxel_count(bounds, source.resolution);
   if (voxels <= kManyVoxels) return voxels;
   const Eigen::Vector3d size = bounds.sizes();
@@ -90,9 +98,9 @@ double count_voxels(const WorldSource& source, const Eigen::AlignedBox3d& bounds
       : kind == WorldKind::kMesh
           ? "give a larger --resolution, or --scale (0.001 if the file is in millimetres)"
           : "give a larger --resolution";
-  if (const std::uint64_t most = most_voxels(source, kind); voxels > static_cast<double>(most))
+  if (voxels > static_cast<double>(most))
     throw BadInput(what + ", too many: a map holds at most " + std::to_string(most) +
-                   (most < kMostVoxels ? " of a file so small" : "") + "; " + advice +
+                   (most < kMostVoxels ? " of a mesh so small" : "") + "; " + advice +
                    (most < kMostVoxels ? ", or say in a task what is to be explored (box_m)" : ""));
   const auto bytes = static_cast<std::uint64_t>(voxels), available = available_memory();  // a byte each
   if (bytes > available)
@@ -149,8 +157,8 @@ SourcedWorld make_world(const WorldSource& source) {
   check_options(source, sourced.kind);
   work_on(source.world, "give a larger --resolution", [&] {
     // As soon as the bounds are known: all that follows may take long.
-    const auto count = [&](const Eigen::AlignedBox3d& bounds) {
-      sourced.voxels = count_voxels(source, bounds, sourced.kind);
+    const auto count = [&](const Eigen::AlignedBox3d& bounds, std::uint64_t most = kMostVoxels) {
+      sourced.voxels = count_voxels(source, bounds, sourced.kind, most);
     };
     if (source.box) {
       count(*source.box);
@@ -168,15 +176,12 @@ SourcedWorld make_world(const WorldSource& source) {
     }
     if (source.box) {
       sourced.world.bounds = *source.box;
-      constexpr double kRounding = 1e-4;  // [m] of a mesh's floats, which may lie in the box's faces
-      const Eigen::Array3d room = Eigen::Array3d::Constant(kRounding);
-      const Eigen::AlignedBox3d within(source.box->min().array() - room, source.box->max().array() + room);
-      const double all = sim::surface_area(sourced.world.mesh);
-      if (all > 0.0)
-        sourced.out_of_bounds =
-            std::clamp(1.0 - sim::surface_area(sourced.world.mesh, within) / all, 0.0, 1.0);
-    } else if (sourced.kind != WorldKind::kMap)
+      sourced.out_of_bounds = part_outside(sourced.world.mesh, *source.box);
+    } else if (sourced.kind == WorldKind::kMesh) {
+      count(sourced.world.bounds, most_voxels(sourced.world.mesh));
+    } else if (sourced.kind == WorldKind::kBuiltIn) {
       count(sourced.world.bounds);
+    }
     const auto& own = sourced.world.start;
     if (source.start)
       put_start(*source.start, "--start", sourced.world);

@@ -100,7 +100,7 @@ TEST_F(ScanCommand, RefusesWhatItCannotUse) {
   expect({write("half.ply", content_of(path("whole.ply")).substr(0, 5000)), "--start", "6,3,1"},
          {"half.ply"});
   expect({path("whole.ply"), "--start", "8000,8000,100", "--scale", "1000"},
-         {"too many: a map holds at most 536800000 of a file so small"});
+         {"too many: a map holds at most 536800000 of a mesh so small"});
 }
 
 TEST_F(ScanCommand, RefusesOutputsBeforeItScans) {

@@ -161,7 +161,7 @@ TEST_F(WorldCommand, RefusesAbsurdSizesAndWarnsOfLargeOnes) {
   box("mm.ply", 1000.F);  // somebody's millimetres: 4 x 5 x 6 km
   expect_refused(
       {path("mm.ply"), "-o", path("out.ply")},
-      {"4000 x 5000 x 6000 m", "e+12 voxels", "at most 536800000 of a file so small", "--scale", "box_m"});
+      {"4000 x 5000 x 6000 m", "e+12 voxels", "at most 536800000 of a mesh so small", "--scale", "box_m"});
   EXPECT_FALSE(std::filesystem::exists(path("out.ply")));
   expect_answer({path("mm.ply"), "--scale", "0.001"}, {"4 x 5 x 6 m"});
   const test::Answer large = run({path("mm.ply"), "--scale", "0.04"});  // 160 x 200 x 240 m
