@@ -102,7 +102,7 @@ TEST_F(ExploreUnseen, TellsHowMuchLiesOutsideTheBoxOfATask) {
   // the first room: 78.28 of 119.68 m2. The box counts as 0.1 mm larger, which holds 0.003 m2 more.
   const double out = json_in("first").at("surface_out_of_bounds");
   EXPECT_NEAR(out, 1.0 - 78.28 / 119.68, 5e-5);
-  expect_parts(answer.out, {"\nout of bounds", percents(out) + " of the world's surface"});
+  expect_parts(answer.out, {"\noutside      " + percents(out) + " of the world's surface"});
 }
 
 TEST_F(ExploreUnseen, IsNotAskedOfARunThatHasNotEndedByItself) {

@@ -132,8 +132,8 @@ void RunDisplay::print_summary(const RunResult& result, const std::optional<RunE
                                   percent(unseen->in_view) + " that they could have seen")
               : "") +
       (setup_.sourced.out_of_bounds >= sim::kMuchUnseen
-           ? row("out of bounds", percent(setup_.sourced.out_of_bounds) +
-                                      " of the world's surface: it lies outside box_m, and is not explored")
+           ? row("outside", percent(setup_.sourced.out_of_bounds) +
+                                " of the world's surface: it is out of bounds (box_m), and not explored")
            : "") +
       row("map", percent(accuracy.surface_part()) + " of the surface voxels occupied, " +
                      percent(accuracy.false_free_part()) + " of the free ones hold a surface, " +
