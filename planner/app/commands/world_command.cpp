@@ -78,7 +78,7 @@ void print_text(const SourcedWorld& sourced, const WorldSource& source) {
   std::string out = row("world", world.name);
   if (sourced.kind == WorldKind::kBuiltIn) out += row("seed", std::to_string(sourced.seed));
   out += row("size", rounded(size.x()) + " x " + rounded(size.y()) + " x " + rounded(size.z()) + " m, " +
-                         rounded(sourced.voxels) + " voxels of " + rounded(source.resolution) + " m") +
+                         fixed(sourced.voxels, 0) + " voxels of " + rounded(source.resolution) + " m") +
          axis("bounds x", 0) + axis("       y", 1) + axis("       z", 2) +
          row("triangles", std::to_string(world.mesh.triangles.size())) +
          row("surface", rounded(sim::surface_area(world.mesh)) + " m^2") +

@@ -159,8 +159,12 @@ std::vector<double> Members::numbers(const std::string& name, const json& value,
                                      const std::string& wanted, const char* unit, const Range& range) const {
   if (!value.is_array() || value.size() != size) refuse_value(name, value, wanted);
   std::vector<double> all;
-  for (const json& item : value) all.push_back(number(name, item, unit, range));
+  for (std::size_t i = 0; i < size; ++i) all.push_back(number(element(name, i), value[i], unit, range));
   return all;
+}
+
+std::string Members::element(const std::string& name, std::size_t index) {
+  return name + "[" + std::to_string(index) + "]";
 }
 
 std::uint64_t Members::whole(const std::string& name, std::uint64_t low, std::uint64_t high) {

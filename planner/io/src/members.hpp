@@ -64,7 +64,7 @@ class Members {
                               double otherwise);
   [[nodiscard]] double number(const std::string& name, const nlohmann::json& value, const char* unit,
                               const Range& range) const;
-  /// An array of exactly so many numbers.
+  /// An array of exactly so many numbers. A message names the one that is wrong.
   [[nodiscard]] std::vector<double> numbers(const std::string& name, const nlohmann::json& value,
                                             std::size_t size, const std::string& wanted, const char* unit,
                                             const Range& range) const;
@@ -82,6 +82,8 @@ class Members {
 
   /// A value in a message.
   [[nodiscard]] static std::string shown(const nlohmann::json& value);
+  /// "name[index]"
+  [[nodiscard]] static std::string element(const std::string& name, std::size_t index);
 
  private:
   const std::filesystem::path& file_;

@@ -91,7 +91,7 @@ void read_limits(Members members, MotionLimits& limits) {
 
 Eigen::Vector3d read_edges(Members& members, const std::string& name) {
   const std::string three = "three numbers in metres, along x, y and z";
-  const auto edges = members.numbers(name, members.get(name, three), 3, three, "m along each axis", kLengths);
+  const auto edges = members.numbers(name, members.get(name, three), 3, three, "m", kLengths);
   return {edges[0], edges[1], edges[2]};
 }
 
@@ -141,8 +141,8 @@ void read_travel(Members& members, RobotForm form, TravelOptions& travel) {
       travel.slope = members.number("slope_deg", "degrees", kSlopes, degrees_of(travel.slope)) * kDegree;
     }
     if (const json* ground = members.find("ground_m")) {
-      const auto edges = members.numbers("ground_m", *ground, 2, "two numbers in metres, along x and y",
-                                         "m along each axis", kLengths);
+      const auto edges =
+          members.numbers("ground_m", *ground, 2, "two numbers in metres, along x and y", "m", kLengths);
       travel.ground_extents = Eigen::Vector2d(edges[0], edges[1]);
     }
   } else {

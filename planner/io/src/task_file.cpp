@@ -41,7 +41,8 @@ Eigen::AlignedBox3d read_box(const Members& members, const json& value) {
   if (!value.is_array() || value.size() != 2) members.refuse_value("box_m", value, wanted);
   std::array<Eigen::Vector3d, 2> corners;
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto numbers = members.numbers("box_m", value[i], 3, wanted, "m", kCoordinates);
+    const auto numbers =
+        members.numbers(Members::element("box_m", i), value[i], 3, wanted, "m", kCoordinates);
     corners[i] = {numbers[0], numbers[1], numbers[2]};
   }
   if (!((corners[1] - corners[0]).minCoeff() > 0.0))
@@ -110,7 +111,7 @@ std::vector<TaskRobot> read_robots(const std::filesystem::path& file, const json
   if (!value.is_array() || value.empty() || value.size() > kMostRobots) refuse("robots", value, wanted);
   std::vector<TaskRobot> robots;
   for (std::size_t i = 0; i < value.size(); ++i) {
-    const std::string name = "robots[" + std::to_string(i) + "]";
+    const std::string name = Members::element("robots", i);
     if (!value[i].is_object()) refuse(name, value[i], kSeeTasks);
     robots.push_back(read_robot_of_task(file, value[i], name, box));
   }
