@@ -373,6 +373,8 @@ TEST_F(TaskCommand, RefusesWhatCannotBe) {
       test::replaced(court_with("\"box_m\": [[0, 0, 0], [6, 6, 2]], ", ""), "1.5, 1.5, 1,", "99, 1, 1,"),
       {"the start of the robot 'uav'", "outside the world"});
   expect_refused({"--task", path("none.json"), "-o", output}, {"--task", "none.json"});
+  expect_refused({path("bad.json"), "-o", output},
+                 {"bad.json: is no world; if it is a task, give it as --task "});
   expect_refused({"--task", folder_.string(), "-o", output}, {"--task", folder_.string()});
   expect_refused({"--task", court(), "-o", output, "--ground", "auto"}, {"--ground", "box"});
   expect_refused({"--task", court(), "-o", output, "--world-seed", "2"},

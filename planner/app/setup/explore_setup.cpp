@@ -243,6 +243,8 @@ WorldSource source_of(const ExploreOptions& options, const GivenStarts& given) {
     source.seed = source.seed.value_or(options.seed);
     return source;
   }
+  if (std::filesystem::path(source.world).extension() == ".json")
+    throw BadInput(source.world + ": is no world; if it is a task, give it as --task " + source.world);
   if (source.seed)
     throw BadInput("--world-seed: " + source.world + " is not a built-in world; leave the option out");
   // The floors of worlds that others have made may lie at any height. Who gives a box knows the floor.
