@@ -28,7 +28,7 @@ FLOW = {
 }
 
 # In one place, where the thread sanitizer does not look into their templates (engine/CMakeLists.txt). The linker takes
-# one copy of those for all, so tests include them no more than we do.
+# one copy of those for all, so tests and benchmarks do not include them either.
 TBB_LOOPS = r"(oneapi/)?tbb/parallel_"
 
 # Libraries, and the files that may include them; all others may not.
@@ -66,13 +66,13 @@ def sources_in(root, top):
                   if name.endswith((".cpp", ".hpp", ".inl")))
 
 
-def loops_in_tests(root):
-    """Complaints of tests that include TBB's loops."""
+def loops_elsewhere(root):
+    """Complaints of tests and benchmarks that include TBB's loops."""
     complaints = []
-    for file in sources_in(root, "tests"):
+    for file in sources_in(root, "tests") + sources_in(root, "bench"):
         with open(os.path.join(root, file), encoding="utf-8") as text:
             if re.search(rf"#\s*include\s*<{TBB_LOOPS}", text.read()):
-                complaints.append(f"{file}: tests include no loops of TBB")
+                complaints.append(f"{file}: tests and benchmarks include no loops of TBB")
     return complaints
 
 
@@ -148,7 +148,7 @@ def main():
     complaints, files, graph = check(sys.argv[1])
     if not files:
         sys.exit(f"no sources below {sys.argv[1]}")
-    complaints += loops_in_tests(sys.argv[1])
+    complaints += loops_elsewhere(sys.argv[1])
     if found := circle(graph):
         complaints.append("a circle of includes: " + " -> ".join(found))
     for folder, count in collections.Counter(os.path.dirname(file) for file in files).items():
