@@ -81,6 +81,8 @@ class OpenVoxels {
   };
   [[nodiscard]] const Layout& layout() const { return layout_; }
   [[nodiscard]] const std::uint64_t* words() const { return words_.get(); }
+  /// The highest index.
+  [[nodiscard]] std::uint32_t last() const { return static_cast<std::uint32_t>(64 * word_count_ - 1); }
   [[nodiscard]] bool open(std::uint32_t index) const {
     return ((words_[index >> 6U] >> (index & 63U)) & 1U) != 0;
   }

@@ -57,7 +57,7 @@ constexpr int kVectorBytes = 4;
 
 constexpr PacketWalk kWalks[] = {
 #ifdef FRONTLUX_X86_SETS
-    {InstructionSet::kAvx512, &avx512::segments, &avx512::rays, &walk_alone_by_avx2},
+    {InstructionSet::kAvx512, &avx512::segments, &avx512::rays, &walk_alone_by_avx512},
     {InstructionSet::kAvx2, &avx2::segments, &avx2::rays, &walk_alone_by_avx2},
 #endif
     {InstructionSet::kVector, &vector::segments, &vector::rays, &walk_alone},

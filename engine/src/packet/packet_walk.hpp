@@ -106,7 +106,7 @@ struct PacketWalk {
   /// where those end that nothing stops in their range.
   void (*rays)(const Lattice& lattice, const OpenVoxels& table, std::span<const Ray> rays, RayBatch& batch);
 
-  /// Walks one of them. Wider registers than those of AVX2 are of no use to it.
+  /// Walks one of them.
   LoneWalk (*alone)(const Lattice& lattice, const OpenVoxels& table, const Ray& ray);
 };
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace frontlux::detail {
 namespace {
@@ -18,7 +19,8 @@ constexpr std::array kLowBit = {0U, 3U, 6U};  // of each axis in an index
 using PerAxis [[gnu::vector_size(16)]] = std::int32_t;
 // The end of a ray's time. Four crossings behind it still fit into 31 bits, though their times mean nothing.
 constexpr std::int32_t kEndOfTime = (1 << 28) - 1;
-constexpr std::int32_t kNever = 7 * (1 << 28);  // later than those, and `too_close` can be added
+constexpr std::int32_t kNever = 7 * (1 << 28);         // later than those, and `too_close` can be added
+constexpr std::uint32_t kWalksOn = kFirstWalkEnd - 1;  // that of a ray which has not ended yet
 
 // What is added below an axis' bits carries up to them.
 std::uint32_t advanced(std::uint32_t index, std::uint32_t axis, std::uint32_t steps) {
@@ -82,6 +84,16 @@ inline Times times_of(const Lattice& lattice, const Ray& ray, const Eigen::Vecto
 
 }  // namespace avx2
 FRONTLUX_END_TARGET
+
+FRONTLUX_BEGIN_AVX512
+namespace avx512 {
+using avx2::times_of;
+
+#include "packet/single_walk_body.inl"
+#include "packet/single_walk_columns.inl"
+
+}  // namespace avx512
+FRONTLUX_END_TARGET
 #endif
 
 namespace plain {
@@ -113,12 +125,15 @@ inline Times times_of(const Lattice& lattice, const Ray& ray, const Eigen::Vecto
 }  // namespace
 
 #ifdef FRONTLUX_X86_SETS
+LoneWalk walk_alone_by_avx512(const Lattice& lattice, const OpenVoxels& table, const Ray& ray) {
+  return avx512::walk_alone<avx512::Columns>(lattice, table, ray);
+}
 LoneWalk walk_alone_by_avx2(const Lattice& lattice, const OpenVoxels& table, const Ray& ray) {
-  return avx2::walk_alone(lattice, table, ray);
+  return avx2::walk_alone<avx2::Steps>(lattice, table, ray);
 }
 #endif
 LoneWalk walk_alone(const Lattice& lattice, const OpenVoxels& table, const Ray& ray) {
-  return plain::walk_alone(lattice, table, ray);
+  return plain::walk_alone<plain::Steps>(lattice, table, ray);
 }
 
 }  // namespace frontlux::detail

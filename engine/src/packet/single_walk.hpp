@@ -19,7 +19,8 @@ struct LoneWalk {
 
 /// Follows a ray as far as `walked_length`, if it starts in an open voxel of the table.
 [[nodiscard]] LoneWalk walk_alone(const Lattice& lattice, const OpenVoxels& table, const Ray& ray);
-/// The same on a processor that has AVX2, where the build has it.
+/// The same on a processor that has AVX2, or AVX-512, where the build has it.
+[[nodiscard]] LoneWalk walk_alone_by_avx512(const Lattice& lattice, const OpenVoxels& table, const Ray& ray);
 [[nodiscard]] LoneWalk walk_alone_by_avx2(const Lattice& lattice, const OpenVoxels& table, const Ray& ray);
 
 }  // namespace frontlux::detail

@@ -1,14 +1,57 @@
-// The walk of a single ray. Included by single_walk.cpp once for each instruction set, inside a namespace that
-// defines `times_of`.
+// The walk of a single ray. Included by single_walk.cpp once for each instruction set, inside a namespace
+// that defines `times_of`.
 
+// Four steps of a ray, one after the other.
+class Steps {
+ public:
+  Steps(const OpenVoxels& table, const Times& times, std::uint32_t flip, int too_close)
+      : table_(table), between_(times.between), flip_(flip), too_close_(too_close) {
+    for (std::size_t a = 0; a < 3; ++a) others_[a] = static_cast<std::int32_t>(~table.layout().bits[a]);
+    others_[3] = ~(others_[0] & others_[1] & others_[2]);
+  }
+
+  // @param t      when the ray crosses into the next voxel along each axis
+  // @param index  of the voxel where it is, flipped so that every step adds
+  // @return what `walk` does, or `kWalksOn` with both moved on
+  std::uint32_t walk_on(PerAxis& t, std::uint32_t& index) const {
+    // No branch depends on which axis is next. `along` is the index, with the bits of all other axes set.
+    PerAxis along = static_cast<std::int32_t>(index) | others_;
+    PerAxis surely_over = t + too_close_;
+    for (int step = 0; step < 4; ++step) {
+      const PerAxis one = __builtin_shufflevector(t, t, 1, 2, 0, 3),
+                    other = __builtin_shufflevector(t, t, 2, 0, 1, 3);
+      const PerAxis first = (one > surely_over) & (other > surely_over), ahead = between_ & first;
+      t += ahead;
+      surely_over += ahead;
+      along = (along - first) | others_;
+      PerAxis all = along & __builtin_shufflevector(along, along, 2, 3, 0, 1);
+      all &= __builtin_shufflevector(all, all, 1, 0, 3, 2);
+      const auto next = static_cast<std::uint32_t>(all[0]);
+      if (next == index) return kTooCloseToTell;  // none was surely first
+      index = next;
+      if (table_.open(index ^ flip_)) continue;
+      const PerAxis entered = (t - between_) & first;  // when, on the axis that it was
+      return (entered[0] | entered[1] | entered[2]) > kEndOfTime ? kWentThrough : index ^ flip_;
+    }
+    return kWalksOn;
+  }
+
+ private:
+  const OpenVoxels& table_;
+  PerAxis between_, others_{};
+  std::uint32_t flip_;
+  int too_close_;
+};
+
+// @tparam Stretch  how it goes on where no cube around it is open
 // @return what `LoneWalk::stopped_at` is, or `kTooCloseToTell`
+template <class Stretch>
 inline std::uint32_t walk(const OpenVoxels& table, const Times& times, std::uint32_t index,
                           std::uint32_t flip, int too_close) {
   const OpenVoxels::Layout& layout = table.layout();
-  PerAxis t = times.first, others{};
+  PerAxis t = times.first;
   const PerAxis d = times.between;
-  for (std::size_t a = 0; a < 3; ++a) others[a] = static_cast<std::int32_t>(~layout.bits[a]);
-  others[3] = ~(others[0] & others[1] & others[2]);
+  const Stretch stretch(table, times, flip, too_close);
   while (true) {
     if (const std::uint32_t radius = table.radius(index ^ flip); radius > 1) {
       const auto leaves = [&](std::size_t a) {
@@ -30,29 +73,13 @@ inline std::uint32_t walk(const OpenVoxels& table, const Times& times, std::uint
       }
       if (closest < too_close) return kTooCloseToTell;
     }
-    // No branch depends on which axis is next. `along` is the index, with the bits of all other axes set.
-    PerAxis along = static_cast<std::int32_t>(index) | others;
-    PerAxis surely_over = t + too_close;
-    for (int step = 0; step < 4; ++step) {
-      const PerAxis one = __builtin_shufflevector(t, t, 1, 2, 0, 3),
-                    other = __builtin_shufflevector(t, t, 2, 0, 1, 3);
-      const PerAxis first = (one > surely_over) & (other > surely_over), ahead = d & first;
-      t += ahead;
-      surely_over += ahead;
-      along = (along - first) | others;
-      PerAxis all = along & __builtin_shufflevector(along, along, 2, 3, 0, 1);
-      all &= __builtin_shufflevector(all, all, 1, 0, 3, 2);
-      const auto next = static_cast<std::uint32_t>(all[0]);
-      if (next == index) return kTooCloseToTell;  // none was surely first
-      index = next;
-      if (table.open(index ^ flip)) continue;
-      const PerAxis entered = (t - d) & first;  // when, on the axis that it was
-      return (entered[0] | entered[1] | entered[2]) > kEndOfTime ? kWentThrough : index ^ flip;
-    }
+    const std::uint32_t end = stretch.walk_on(t, index);
+    if (end != kWalksOn) return end;
     if (std::min(std::min(t[0], t[1]), t[2]) > kEndOfTime) return kWentThrough;
   }
 }
 
+template <class Stretch>
 LoneWalk walk_alone(const Lattice& lattice, const OpenVoxels& table, const Ray& ray) {
   const auto start = lattice.key(ray.origin);
   if (!start || !table.contains(*start)) return {kNeverStarted, {}, {}};
@@ -63,15 +90,14 @@ LoneWalk walk_alone(const Lattice& lattice, const OpenVoxels& table, const Ray& 
 
   const double resolution = lattice.resolution(), length = walked_length(ray.max_range, resolution);
   std::uint32_t flip = 0;
-  for (std::size_t a = 0; a < 3; ++a)
-    flip |= ray.direction[static_cast<int>(a)] < 0.0F ? layout.bits[a] : 0U;
+  for (std::size_t a = 0; a < 3; ++a) flip |= ray.direction[static_cast<int>(a)] < 0.0F ? layout.bits[a] : 0U;
   index ^= flip;
   const Times times = times_of(lattice, ray, direction,
                                kEndOfTime / length * static_cast<double>(length_as_octomap(ray.direction)));
   // By rounding, a ray that starts on a face may have crossed it before.
   const bool is_clear = (times.first[0] | times.first[1] | times.first[2]) >= 0;
   const int too_close = static_cast<int>(length * lattice.voxels_per_metre()) + kRounding;
-  std::uint32_t end = is_clear ? walk(table, times, index, flip, too_close) : kTooCloseToTell;
+  std::uint32_t end = is_clear ? walk<Stretch>(table, times, index, flip, too_close) : kTooCloseToTell;
   if (end == kTooCloseToTell)
     end = walk_exactly(table, crossings_of(lattice, ray.origin, *start, direction), index, flip, length);
   return {end, *start, direction};

@@ -313,6 +313,44 @@ TEST(PacketWalk, TellsWhereRaysRunOut) {
   }
 }
 
+// Along one axis of a hall longer than rays are walked, whose wall they reach long after it: times of
+// crossings later than a walk's end are cut off, so that a ray would seem to enter the wall when it ends.
+TEST(PacketWalk, IsStoppedByNothingThatComesAfterItsTime) {
+  constexpr int kLength = static_cast<int>(detail::kLongestWalk) + 60;
+  Random random(12);
+  for (std::size_t along = 0; along < 3; ++along) {
+    const std::size_t across = (along + 1) % 3, sideways = (along + 2) % 3;
+    VoxelGrid grid(0.1);
+    std::array<int, 3> from{32768, 32768, 32768}, to{32770, 32770, 32770};
+    to[along] += kLength;
+    to[sideways] += kLength / 2;
+    for_each_key({detail::as_key(from), detail::as_key(to)},
+                 [&](const VoxelKey& key) { grid.set(key, Occupancy::kFree); });
+    from[across] = to[across];
+    for_each_key({detail::as_key(from), detail::as_key(to)},
+                 [&](const VoxelKey& key) { grid.set(key, Occupancy::kOccupied); });
+    const OpenVoxels table = table_of(grid, UnknownPolicy::kBlock, kAllVoxels);
+    for (int i = 0; i < 2000; ++i) {
+      Ray ray{Eigen::Vector3f::Constant(0.15F), Eigen::Vector3f::Zero(), -1.0};
+      const auto slope = static_cast<float>(random.uniform(1.0, 2.4) / detail::kLongestWalk / 2.5);
+      ray.origin[static_cast<int>(along)] = static_cast<float>(random.uniform(0.0, 0.1));
+      ray.origin[static_cast<int>(across)] = 0.1F - slope * static_cast<float>(random.uniform(0.0, 0.12));
+      ray.direction[static_cast<int>(along)] = 1.0F;
+      ray.direction[static_cast<int>(across)] = slope;
+      if (i % 2 == 0)
+        ray.direction[static_cast<int>(sideways)] = static_cast<float>(random.uniform(0.1, 0.4));
+      for (const detail::PacketWalk& walk : detail::packet_walks()) {
+        Hit hit;
+        std::uint16_t left = 0;
+        const TableQuery query(grid, table, UnknownPolicy::kBlock, walk);
+        const bool told = query.cast({&ray, 1}, {&hit, 1}, {&left, 1}) == 0;
+        ASSERT_TRUE(!told || same(hit, detail::walk_ray(grid, ray, UnknownPolicy::kBlock)))
+            << name_of(walk.needs);
+      }
+    }
+  }
+}
+
 // A ray whose distance lies in the middle between two floats, to the last bit of its direction's length: the
 // sum of squares has one order.
 TEST(PacketWalk, MeasuresDistancesAsTheWalkDoes) {

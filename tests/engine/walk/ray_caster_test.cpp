@@ -348,7 +348,7 @@ TEST(RayCaster, QueriesGoOnDuringUpdates) {
         }
       });
     const bool takes_long = caster->memory_bytes() > 0;
-    constexpr int kMost = 50, kEnough = 5;
+    constexpr int kMost = 500, kEnough = 5;
     int overlapped = 0;  // by batches
     for (int i = 0; i < kMost && (i < 2 * kEnough || (takes_long && overlapped < kEnough)); ++i) {
       const int before = during;
