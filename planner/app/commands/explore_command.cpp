@@ -99,7 +99,7 @@ void add_explore_command(CLI::App& app) {
                      });
   command.add("WORLD", options.source.world, "", "Built-in world (see frontlux world), mesh or OctoMap file");
   command.add("-o,--output", given->output, "DIR",
-              "Folder for the files of the run; created if missing [runs/WORLD-SEED]");
+              "Folder for the files of the run; created if missing, in one that exists [runs/WORLD-SEED]");
   command.add_flag("--force", given->run.force, "Replace the run in the folder");
   Option resume =
       command.add("--resume", given->resume, "DIR", "Continue the run in this folder, with its options");
