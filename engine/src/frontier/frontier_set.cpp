@@ -1,4 +1,5 @@
 #include <frontlux/brick_table.hpp>
+#include <frontlux/file.hpp>
 #include <frontlux/frontier_set.hpp>
 
 #include <algorithm>
@@ -6,6 +7,8 @@
 #include <bit>
 #include <iterator>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace frontlux {
@@ -109,6 +112,7 @@ struct FrontierSet::State {
   using Bricks = BrickTable<bool>;  // a set of numbers
   static constexpr std::uint64_t kMostBricks = std::uint64_t{1} << 22;
 
+  double resolution;
   KeyBox bounds;
   Adjacency adjacency;
   std::size_t most;
@@ -204,7 +208,10 @@ struct FrontierSet::State {
 };
 
 FrontierSet::FrontierSet(const VoxelGrid& grid, const KeyBox& bounds, Adjacency adjacency, std::size_t most)
-    : state_(std::make_unique<State>(State{bounds, adjacency, most})) {
+    : state_(std::make_unique<State>(State{grid.resolution(), bounds, adjacency, most})) {
+  if (adjacency != Adjacency::kFaces && adjacency != Adjacency::kCorners)
+    throw std::invalid_argument("frontiers: adjacency has the unknown value " +
+                                std::to_string(static_cast<int>(adjacency)));
   state_->build(grid);
 }
 FrontierSet::~FrontierSet() = default;
@@ -212,6 +219,9 @@ FrontierSet::FrontierSet(FrontierSet&&) noexcept = default;
 FrontierSet& FrontierSet::operator=(FrontierSet&&) noexcept = default;
 
 void FrontierSet::update(const MapChange& change) {
+  if (change.grid.resolution() != state_->resolution)
+    throw std::invalid_argument("frontiers: the map has voxels of " + decimals_of(change.grid.resolution()) +
+                                " m, those before had " + decimals_of(state_->resolution) + " m");
   State::Bricks stale;
   std::optional<KeyBox> last;
   for (const VoxelKey& key : change.keys) {

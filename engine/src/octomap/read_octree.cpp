@@ -7,7 +7,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <new>
 #include <sstream>
+#include <utility>
 
 namespace frontlux {
 namespace {
@@ -28,10 +30,11 @@ void check_memory(const std::filesystem::path& file, const detail::OctreeFile& c
 
 }  // namespace
 
-Octree read_octree(const std::filesystem::path& file) {
+Octree read_octree(const std::filesystem::path& file) try {
   detail::OctreeFile checked = detail::read_checked_octree_file(file);
   check_memory(file, checked);
-  std::istringstream nodes(checked.bytes.substr(checked.data_offset));
+  checked.bytes.erase(0, checked.data_offset);
+  std::istringstream nodes(std::move(checked.bytes));
   const auto read = [&](auto tree) -> Octree {
     if (checked.node_count == 0) return tree;
     if (checked.format == detail::OctreeFormat::kBinary)
@@ -43,6 +46,8 @@ Octree read_octree(const std::filesystem::path& file) {
   if (checked.tree_type == "ColorOcTree")
     return read(std::make_shared<octomap::ColorOcTree>(checked.resolution));
   return read(std::make_shared<octomap::OcTree>(checked.resolution));
+} catch (const std::bad_alloc&) {
+  fail(file, "takes more memory than there is", "give a smaller file");
 }
 
 }  // namespace frontlux

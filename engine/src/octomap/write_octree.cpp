@@ -5,6 +5,7 @@
 
 #include <ostream>
 #include <stdexcept>
+#include <string>
 
 namespace frontlux {
 namespace {
@@ -13,8 +14,11 @@ namespace {
 template <class Tree>
 void write(const Tree& tree, const std::filesystem::path& file) {
   const bool binary = file.extension() == ".bt";
+  if (file.native().find('\0') != std::string::npos)
+    throw std::invalid_argument("'" + std::string(file.c_str()) +
+                                "...': a file name cannot hold a byte of 0");
   if (!binary && file.extension() != ".ot")
-    throw std::invalid_argument(file.string() + ": a map's file name ends in .bt or .ot");
+    throw std::invalid_argument("'" + file.string() + "': a map's file name ends in .bt or .ot");
   const double resolution = tree.getResolution();
   if (!(resolution >= detail::kMinResolution && resolution <= detail::kMaxResolution))
     throw std::invalid_argument(file.string() + ": the resolution, " + decimals_of(resolution) +

@@ -52,6 +52,35 @@ std::uint32_t walk_exactly(const OpenVoxels& table, Crossings<double> line, std:
   }
 }
 
+// Crosses what a ray that starts on faces crosses right then, or by rounding before. In which order does not
+// matter if all voxels around are open.
+// @return false if they are not, or another crossing is too close as well
+bool cross_at_start(const OpenVoxels& table, Times& times, std::uint32_t& index, std::uint32_t flip,
+                    int too_close) {
+  const PerAxis now = times.first <= too_close;
+  std::array<std::uint32_t, 3> ahead{};  // the part of each such axis in the index, a step on
+  std::uint32_t parts = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (now[a] == 0) {
+      if (times.first[a] <= 3 * too_close) return false;
+      continue;
+    }
+    const std::uint32_t bits = table.layout().bits[a];
+    ahead[a] = advanced(index, bits, 1) & bits;
+    parts |= bits;
+  }
+  const std::uint32_t rest = index & ~parts;
+  for (unsigned some = 1; some < 8; ++some) {
+    std::uint32_t beside = rest;
+    for (std::size_t a = 0; a < 3; ++a)
+      beside |= now[a] != 0 && (some >> a & 1U) != 0 ? ahead[a] : index & parts & table.layout().bits[a];
+    if (!table.open(beside ^ flip)) return false;
+  }
+  index = rest | ahead[0] | ahead[1] | ahead[2];
+  times.first += times.between & now;
+  return true;
+}
+
 #ifdef FRONTLUX_X86_SETS
 FRONTLUX_BEGIN_AVX2
 namespace avx2 {

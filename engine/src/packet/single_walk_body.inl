@@ -92,13 +92,17 @@ LoneWalk walk_alone(const Lattice& lattice, const OpenVoxels& table, const Ray& 
   std::uint32_t flip = 0;
   for (std::size_t a = 0; a < 3; ++a) flip |= ray.direction[static_cast<int>(a)] < 0.0F ? layout.bits[a] : 0U;
   index ^= flip;
-  const Times times = times_of(lattice, ray, direction,
-                               kEndOfTime / length * static_cast<double>(length_as_octomap(ray.direction)));
-  // By rounding, a ray that starts on a face may have crossed it before.
-  const bool is_clear = (times.first[0] | times.first[1] | times.first[2]) >= 0;
+  Times times = times_of(lattice, ray, direction,
+                         kEndOfTime / length * static_cast<double>(length_as_octomap(ray.direction)));
   const int too_close = static_cast<int>(length * lattice.voxels_per_metre()) + kRounding;
-  std::uint32_t end = is_clear ? walk<Stretch>(table, times, index, flip, too_close) : kTooCloseToTell;
+  const PerAxis& t = times.first;
+  const int low = std::min(t[0], t[1]), high = std::max(t[0], t[1]);
+  const int first = std::min(low, t[2]), second = std::max(low, std::min(high, t[2]));
+  std::uint32_t end = kTooCloseToTell;
+  if ((first >= 0 && second > too_close) || cross_at_start(table, times, index, flip, too_close))
+    end = walk<Stretch>(table, times, index, flip, too_close);
   if (end == kTooCloseToTell)
-    end = walk_exactly(table, crossings_of(lattice, ray.origin, *start, direction), index, flip, length);
+    end = walk_exactly(table, crossings_of(lattice, ray.origin, *start, direction),
+                       layout.index(*start) ^ flip, flip, length);
   return {end, *start, direction};
 }

@@ -18,6 +18,9 @@ void check_angle(const char* name, double angle) {
 }  // namespace
 
 void FieldOfView::check() const {
+  if (shape > Shape::kCone)
+    throw std::invalid_argument("field of view: shape has the unknown value " +
+                                std::to_string(static_cast<int>(shape)));
   switch (shape) {
     case Shape::kSpinning:
       check_angle("vertical", vertical);

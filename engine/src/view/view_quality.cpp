@@ -144,6 +144,10 @@ std::size_t ViewQualityImage::best() const {
 std::size_t ViewQualityImage::update(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
                                      std::span<const VoxelKey> targets, const MapChange& change) {
   check_count(viewpoints.size());
+  if (change.grid.resolution() != resolution_)
+    throw std::invalid_argument("view quality on voxels of " + decimals_of(resolution_) +
+                                " m, but those of the map that has changed are of " +
+                                decimals_of(change.grid.resolution()) + " m");
   auto index = std::make_shared<const detail::TargetIndex>(targets);
   const ViewQualityOptions options = effective(options_);
   const bool buckets = options.sampling == ViewQualityOptions::Sampling::kBuckets;

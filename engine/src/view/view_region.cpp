@@ -1,3 +1,4 @@
+#include <frontlux/file.hpp>
 #include <frontlux/view_region.hpp>
 
 #include <algorithm>
@@ -14,10 +15,12 @@ constexpr double kSafely = 1.0 + 1e-9;  // far more than rounding can do
 int checked_reach(const FieldOfView& view, double resolution) {
   view.check();
   const double range = view.max_range;
+  if (!(resolution > 0.0))
+    throw std::invalid_argument("field of view: the resolution is " + decimals_of(resolution) +
+                                " m, but has to be positive");
   if (!std::isnormal(resolution * resolution) || !std::isnormal(range * range))
-    throw std::invalid_argument("field of view: a range of " + std::to_string(range) +
-                                " m at a resolution of " + std::to_string(resolution) +
-                                " m is out of the numbers' range");
+    throw std::invalid_argument("field of view: a range of " + decimals_of(range) + " m at a resolution of " +
+                                decimals_of(resolution) + " m is out of the numbers' range");
   if (range / resolution > ViewRegion::kMaxRange)
     throw std::invalid_argument("field of view: max_range is " + std::to_string(range) + " m, which is " +
                                 std::to_string(range / resolution) + " voxels of " +

@@ -1,3 +1,4 @@
+#include "support/complaint.hpp"
 #include "support/plain_frontiers.hpp"
 #include "support/random.hpp"
 #include "support/voxel_keys.hpp"
@@ -89,6 +90,17 @@ TEST(FrontierSet, RefusesMoreFrontiersThanItMayHave) {
   expect_frontiers(FrontierSet(grid, around(100, 100, 100, 10)), grid, around(100, 100, 100, 10),
                    Adjacency::kFaces, "back");
   EXPECT_EQ(frontiers.size(), 6U);
+}
+
+TEST(FrontierSet, RefusesOtherVoxelsAndOtherNeighbours) {
+  VoxelGrid grid(0.1);
+  const VoxelKey key = {100, 100, 100};
+  grid.set(key, Occupancy::kFree);
+  FrontierSet frontiers(grid, kAllVoxels);
+  test::expect_complaint([&] { frontiers.update({VoxelGrid(0.2), {&key, 1}}); }, {"0.1 m", "0.2 m"});
+  EXPECT_EQ(frontiers.size(), 6U);
+  test::expect_complaint([&] { const FrontierSet other(grid, kAllVoxels, static_cast<Adjacency>(7)); },
+                         {"adjacency", "7"});
 }
 
 }  // namespace

@@ -296,6 +296,7 @@ class WriteOctree : public FolderTest {};
 
 TEST_F(WriteOctree, RefusesWhatCouldNotBeReadAgain) {
   expect_complaint([&] { write_octree(root_alone(), path("root.bt")); }, {"root.bt", ".ot"});
+  expect_complaint([&] { write_octree(root_alone(), std::string("no\0map.ot", 9)); }, {"no", "byte of 0"});
   write_octree(root_alone(), path("root.ot"));
   EXPECT_TRUE(make_voxel_grid(read_octree(path("root.ot"))) == make_voxel_grid(root_alone()));
   for (const double resolution : {1e-10, 1e10})

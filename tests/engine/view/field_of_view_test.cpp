@@ -77,6 +77,9 @@ TEST(FieldOfView, ChecksItsValues) {
         }
       }
   }
+  FieldOfView wrong = lidar();
+  wrong.shape = static_cast<Shape>(9);
+  expect_complaint([&] { wrong.check(); }, {"shape", "9"});
 }
 
 }  // namespace

@@ -308,6 +308,9 @@ TEST(ViewQuality, RefusesACasterOfOtherVoxels) {
   const std::array keys{key_at(1, 1, 1)};
   expect_complaint([&] { image.render(*make_grid_ray_caster(VoxelGrid(0.1)), keys, keys); }, {"0.3", "0.1"});
   EXPECT_EQ(image.size(), 0U);
+  const auto caster = make_grid_ray_caster(VoxelGrid(0.3));
+  image.render(*caster, keys, keys);
+  expect_complaint([&] { image.update(*caster, keys, keys, {VoxelGrid(0.1), keys}); }, {"0.3", "0.1"});
 }
 
 TEST(ViewQualityImage, OfEqualViewpointsTheFirstIsTheBest) {

@@ -1,9 +1,12 @@
 // The table of a field of view against the field of view itself, offset by offset.
 
+#include "support/complaint.hpp"
 #include "support/random.hpp"
 #include "support/views.hpp"
 
 #include <frontlux/view_region.hpp>
+
+#include <limits>
 
 namespace frontlux::test {
 namespace {
@@ -100,6 +103,11 @@ TEST(ViewRegion, RejectsBoxesOnlyIfNothingInThemIsInView) {
   EXPECT_GT(rejected, 1000U);
   EXPECT_GT(accepted, 1000U);
   EXPECT_GT(points, 1000U);
+}
+
+TEST(ViewRegion, RefusesVoxelsWithoutASize) {
+  for (const double resolution : {-0.1, -1e-12, 0.0, std::numeric_limits<double>::quiet_NaN()})
+    expect_complaint([&] { const ViewRegion region(lidar(), resolution); }, {"resolution", "positive"});
 }
 
 }  // namespace
