@@ -1,6 +1,7 @@
 #include "packet/packet_walk.hpp"
 
 #include "isa/targets.hpp"
+#include "packet/start_on_faces.hpp"
 #include "walk/free_end.hpp"
 #include "walk/walk.hpp"
 

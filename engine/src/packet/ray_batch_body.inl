@@ -50,6 +50,8 @@ inline void start(const Lattice& lattice, const OpenVoxels& table, const RayBatc
     lines.index[i] = lines.flip[i] = 0;
   }
   const OpenVoxels::Layout& layout = table.layout();
+  alignas(64) PerLine<std::uint32_t> at_start;  // axes that are crossed too soon to tell from time 0
+  at_start.fill(0);
   for (std::size_t a = 0; a < 3; ++a) {
     const double lowest = table.bounds_min(a) - Lattice::kOrigin,
                  highest = table.bounds_max(a) - Lattice::kOrigin;
@@ -70,10 +72,12 @@ inline void start(const Lattice& lattice, const OpenVoxels& table, const RayBatc
     for (std::size_t i = 0; i < batch.size; ++i) {
       const double o = static_cast<double>(origin[i]), d = static_cast<double>(direction[i]);
       const double border = (cell[i] + 0.5) * resolution + std::copysign(0.5 * resolution, d);
-      const double first = (border - o) / d * units[i];  // infinite or not a number if the ray moves not
+      const double time = (border - o) / d * units[i];
+      const double first = d != 0.0 ? time : std::numeric_limits<double>::infinity();
       const double between = resolution / std::fabs(d) * units[i];
       fitness[i] &= first < 0.0 ? kStarts : kStarts | kIsClear;  // by rounding, on a face
       t_max[i] = static_cast<std::int32_t>(first < kNever ? std::max(first, 0.0) : kNever);
+      at_start[i] += t_max[i] <= kCloseToTell ? 1 : 0;
       t_delta[i] = static_cast<std::int32_t>(between < kEndOfTime + 1.0 ? between : kEndOfTime + 1.0);
     }
     for (std::size_t i = 0; i < batch.size; ++i) {
@@ -86,6 +90,14 @@ inline void start(const Lattice& lattice, const OpenVoxels& table, const RayBatc
   for (std::size_t i = 0; i < batch.size; ++i) {
     if ((fitness[i] & kStarts) != 0 && table.open(lines.index[i])) {
       lines.index[i] ^= lines.flip[i];
+      if (at_start[i] < 2 && (fitness[i] & kIsClear) != 0) continue;
+      const auto per_axis = [i](const auto& t) { return std::array{t[0][i], t[1][i], t[2][i]}; };
+      std::array<std::int32_t, 3> first = per_axis(lines.t_max);
+      if (cross_at_start(table, first, per_axis(lines.t_delta), lines.index[i], lines.flip[i],
+                         kCloseToTell)) {
+        fitness[i] |= kIsClear;
+        for (std::size_t a = 0; a < 3; ++a) lines.t_max[a][i] = first[a];
+      }
       continue;
     }
     fitness[i] = 0;

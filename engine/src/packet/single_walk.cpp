@@ -2,6 +2,7 @@
 
 #include "isa/targets.hpp"
 #include "packet/packet_walk.hpp"
+#include "packet/start_on_faces.hpp"
 #include "walk/walk.hpp"
 
 #include <algorithm>
@@ -22,16 +23,20 @@ constexpr std::int32_t kEndOfTime = (1 << 28) - 1;
 constexpr std::int32_t kNever = 7 * (1 << 28);         // later than those, and `too_close` can be added
 constexpr std::uint32_t kWalksOn = kFirstWalkEnd - 1;  // that of a ray which has not ended yet
 
-// What is added below an axis' bits carries up to them.
-std::uint32_t advanced(std::uint32_t index, std::uint32_t axis, std::uint32_t steps) {
-  return (((index | ~axis) + steps) & axis) | (index & ~axis);
-}
-
 // When a ray crosses into the next voxel along each axis for the first time, and the time between two such
 // crossings. They come from the direction as it is given, since castRay's own, of length 1 in float, is known
 // later.
 struct Times {
   PerAxis first, between;
+
+  // As the function of that name.
+  bool cross_at_start(const OpenVoxels& table, std::uint32_t& index, std::uint32_t flip, int too_close) {
+    std::array next = {first[0], first[1], first[2]};
+    if (!detail::cross_at_start(table, next, {between[0], between[1], between[2]}, index, flip, too_close))
+      return false;
+    first = PerAxis{next[0], next[1], next[2], kNever};
+    return true;
+  }
 };
 // Those are off by 2^-24, two of them together by 32 at the end of time. All are cut off to whole numbers,
 // and so is what each step adds: after n steps along an axis the difference of two is off by n + 1 more.
@@ -50,35 +55,6 @@ std::uint32_t walk_exactly(const OpenVoxels& table, Crossings<double> line, std:
     index = advanced(index, table.layout().bits[axis], 1);
     if (!table.open(index ^ flip)) return index ^ flip;
   }
-}
-
-// Crosses what a ray that starts on faces crosses right then, or by rounding before. In which order does not
-// matter if all voxels around are open.
-// @return false if they are not, or another crossing is too close as well
-bool cross_at_start(const OpenVoxels& table, Times& times, std::uint32_t& index, std::uint32_t flip,
-                    int too_close) {
-  const PerAxis now = times.first <= too_close;
-  std::array<std::uint32_t, 3> ahead{};  // the part of each such axis in the index, a step on
-  std::uint32_t parts = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (now[a] == 0) {
-      if (times.first[a] <= 3 * too_close) return false;
-      continue;
-    }
-    const std::uint32_t bits = table.layout().bits[a];
-    ahead[a] = advanced(index, bits, 1) & bits;
-    parts |= bits;
-  }
-  const std::uint32_t rest = index & ~parts;
-  for (unsigned some = 1; some < 8; ++some) {
-    std::uint32_t beside = rest;
-    for (std::size_t a = 0; a < 3; ++a)
-      beside |= now[a] != 0 && (some >> a & 1U) != 0 ? ahead[a] : index & parts & table.layout().bits[a];
-    if (!table.open(beside ^ flip)) return false;
-  }
-  index = rest | ahead[0] | ahead[1] | ahead[2];
-  times.first += times.between & now;
-  return true;
 }
 
 #ifdef FRONTLUX_X86_SETS

@@ -99,7 +99,7 @@ LoneWalk walk_alone(const Lattice& lattice, const OpenVoxels& table, const Ray& 
   const int low = std::min(t[0], t[1]), high = std::max(t[0], t[1]);
   const int first = std::min(low, t[2]), second = std::max(low, std::min(high, t[2]));
   std::uint32_t end = kTooCloseToTell;
-  if ((first >= 0 && second > too_close) || cross_at_start(table, times, index, flip, too_close))
+  if ((first >= 0 && second > too_close) || times.cross_at_start(table, index, flip, too_close))
     end = walk<Stretch>(table, times, index, flip, too_close);
   if (end == kTooCloseToTell)
     end = walk_exactly(table, crossings_of(lattice, ray.origin, *start, direction),
