@@ -144,6 +144,12 @@ ended by itself has success even if it ended badly: see "warnings" in its run.js
   // CLI11 takes the last word first.
   std::vector<std::string> words(std::reverse_iterator(argv + argc),
                                  std::reverse_iterator(argv + std::min(argc, 1)));
+  // It would take the word behind `--team=` for its value.
+  for (auto word = words.begin(); word != words.end(); ++word)
+    if (word->size() > 3 && word->starts_with("--") && word->find('=') == word->size() - 1) {
+      word->pop_back();
+      word = words.insert(word, "") + 1;
+    }
   if (!words.empty() && words.back() == "help") {
     words.back() = "--help";
     if (words.size() > 1) {

@@ -77,6 +77,39 @@ TEST_F(ExploreUnseen, TellsItBesideThatMuchIsLeft) {
   expect_parts(answer.out, {"\ncube         travelled ", " times; " + goal + "\n"});
 }
 
+TEST_F(ExploreUnseen, TellsThatARobotStartsFarFromWhereItWasAskedTo) {
+  ASSERT_EQ(explore("run", "0.9", true, {"--stop-time", "0.5"}).code, 0);
+  EXPECT_EQ(json_in("run").at("warnings"), json::array());
+  // At the end of a corridor that is too narrow for it.
+  sim::World world;
+  for (const auto& [low, high] : {std::pair(Vector3f(0.0F, 0.0F, 0.0F), Vector3f(8.0F, 3.0F, 2.2F)),
+                                  {Vector3f(4.0F, 0.0F, 0.0F), Vector3f(8.0F, 1.2F, 2.2F)},
+                                  {Vector3f(4.0F, 1.8F, 0.0F), Vector3f(8.0F, 3.0F, 2.2F)}})
+    sim::test::add_box(world.mesh, {low, high});
+  sim::write_ply(path("corridor.ply"), world.mesh);
+  const std::vector<std::string> there = {path("corridor.ply"),
+                                          "--start",
+                                          "7.5,1.5,1.1",
+                                          "--ground",
+                                          "off",
+                                          "--resolution",
+                                          "0.2",
+                                          "--team",
+                                          "",
+                                          "--robot",
+                                          path("cube.json"),
+                                          "--report",
+                                          "off",
+                                          "--stop-time",
+                                          "0.5",
+                                          "-o",
+                                          path("far")};
+  ASSERT_EQ(run(there).code, 0);
+  const json warnings = json_in("far").at("warnings");
+  ASSERT_EQ(warnings.size(), 1U);
+  expect_parts(warnings.at(0), {"'cube' has started at 3.", " m from the start that was given"});
+}
+
 TEST_F(ExploreUnseen, TellsNothingOfRobotsThatFit) {
   const Answer answer = explore("run", "0.5", true);
   ASSERT_EQ(answer.code, 0) << answer.err;

@@ -13,7 +13,7 @@ TEST_F(HelpCommand, HelpTeaches) {
   expect_answer({"info", "--help"}, {"Example", "frontlux info building.bt"});
   expect_answer({"cast", "--help"}, {"Example", "frontlux cast building.bt --from", "--unknown block|pass",
                                      "[block]", "(required)"});
-  expect_answer({"explore", "--help"}, {"Stopping:", "Random seed (layout, planner, noise) [1]"});
+  expect_answer({"explore", "--help"}, {"Stopping:", "Random seed (built-in layout, draws, noise) [1]"});
   EXPECT_EQ(expect_answer({"-V"}), expect_answer({"--version"}, {"frontlux "}));
 }
 
@@ -46,6 +46,8 @@ TEST_F(HelpCommand, SaysWhatToNameInTheirPlace) {
       {"--output: '' names no file", {"report", folder, "-o", ""}},
       {"--manual: '' names no folder", {"--manual", ""}}};
   for (const auto& [part, words] : empty) expect_refused(words, {part});
+  // The word behind is no value.
+  expect_refused({"explore", "room", "--goal=", "--quiet"}, {"--goal: ''"});
 }
 
 // A result that nobody gets is none.

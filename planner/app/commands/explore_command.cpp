@@ -106,7 +106,7 @@ void add_explore_command(CLI::App& app) {
   command.add("--threads", given->run.threads, "N",
               "Number of threads, which does not change the result; 0: all cores", Range<int>{0, 1024});
   command.add("--report", given->run.report, "Write report.html");
-  command.add("--seed", options.seed, "N", "Random seed (layout, planner, noise)", kSeeds);
+  command.add("--seed", options.seed, "N", "Random seed (built-in layout, draws, noise)", kSeeds);
   command.group("Run", Command::Shown::kInHelpAll);
   command.add("--world-seed", options.source.seed, "N", "Random seed of a built-in world's layout [--seed]",
               kSeeds);

@@ -29,7 +29,9 @@ std::string why_unseen(const sim::Unseen& unseen) {
   if (unseen.in_view >= sim::kMuchUnseen)
     text += "; " + percent(unseen.in_view) +
             " could have been seen from places where they fit, but they did not get there through what they "
-            "knew to be free, or would have seen too little there (--epsilon)";
+            "knew to be free, or would have seen too little there (on tours less than some 1.5 m2 of "
+            "frontiers in "
+            "one place, else fewer than --epsilon; --goal nearest or render goes to less)";
   if (unseen.hidden >= sim::kMuchUnseen)
     text += "; " + percent(unseen.hidden) +
             " are hidden from everywhere, or out of the reach of their sensors (range_m, vertical_deg)";
@@ -66,6 +68,19 @@ std::string why_they_rest(const ExploreSetup& setup, const RunNumbers& numbers) 
     if (numbers.robots[r].takes_part && !numbers.robots[r].goal.empty())
       text += "; " + setup.head.robots[r].robot.name + ": " + numbers.robots[r].goal;
   return text;
+}
+
+// That a robot starts far from where it was asked to, which may be behind a wall: it does not fit nearer.
+// Those of a team stand beside each other.
+std::optional<std::string> far_start(const ExploreSetup& setup, std::size_t robot) {
+  const double far = 2.0 * static_cast<double>(setup.head.robots.size());  // [m]
+  if (!setup.given_start || setup.given_starts[robot]) return std::nullopt;
+  const Eigen::Vector3f asked = *setup.given_start,
+                        start = setup.head.starts[robot].pose.position.cast<float>();
+  const double away = static_cast<double>((start - asked).head<2>().norm());
+  if (away <= far) return std::nullopt;
+  return "the robot '" + setup.head.robots[robot].robot.name + "' has started at " + to_text(start) + " m, " +
+         fixed(away, 1) + " m from the start that was given, as it does not fit nearer to that";
 }
 
 std::string by_stray_returns(const ExploreSetup& setup) {
@@ -116,6 +131,7 @@ std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& 
   for (std::size_t r = 0; r < numbers.robots.size(); ++r) {
     const RobotNumbers& robot = numbers.robots[r];
     const std::string name = "the robot '" + setup.head.robots[r].robot.name + "'";
+    if (const auto far = far_start(setup, r)) warnings.push_back(*far);
     if (robot.failed)
       warnings.push_back(name + " failed after " + rounded(*robot.failed) + " s, as --fail says" +
                          (robot.takes_part ? ", and joined the others again, as --join says" : ""));
