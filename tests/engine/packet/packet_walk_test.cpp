@@ -1,16 +1,13 @@
-// The table of open voxels against the grid, and the walk of packets through it, on every instruction set
-// that this processor has, against the walk of one ray.
+// The walk of packets through a table of open voxels, on every instruction set that this processor has,
+// against the walk of one ray.
 
 #include "packet/packet_walk.hpp"
 
-#include "packet/open_voxels.hpp"
+#include "engine/packet/packet_maps.hpp"
 #include "packet/table_query.hpp"
-#include "support/maps.hpp"
 #include "support/random.hpp"
 #include "support/ray_samples.hpp"
 #include "walk/walk.hpp"
-
-#include <frontlux/octomap.hpp>
 
 #include <gtest/gtest.h>
 
@@ -20,202 +17,10 @@ namespace {
 using detail::OpenVoxels;
 using detail::TableQuery;
 
-constexpr UnknownPolicy kPolicies[] = {UnknownPolicy::kBlock, UnknownPolicy::kPass};
-
 bool same(const Hit& a, const Hit& b) {
   return a.stop == b.stop && a.state == b.state && a.key == b.key &&
          std::memcmp(&a.end, &b.end, sizeof a.end) == 0 &&
          std::memcmp(&a.entry, &b.entry, sizeof a.entry) == 0 && a.distance == b.distance;
-}
-
-// 40 x 40 x 40 voxels of noise in a corner of the key range.
-VoxelGrid corner_grid(int corner, std::uint64_t seed) {
-  VoxelGrid grid(0.25);
-  Random random(seed);
-  const auto key = [&](int i) { return static_cast<std::uint16_t>(corner == 0 ? i : 65535 - i); };
-  for (int x = 0; x < 40; ++x)
-    for (int y = 0; y < 40; ++y)
-      for (int z = 0; z < 40; ++z)
-        grid.set({key(x), key(y), key(z)}, random.one_in(30)   ? Occupancy::kOccupied
-                                           : random.one_in(30) ? Occupancy::kUnknown
-                                                               : Occupancy::kFree);
-  return grid;
-}
-
-// A hall of 192 x 160 x 96 voxels with posts, slabs and specks, where most space is open.
-VoxelGrid hall_grid(std::uint64_t seed) {
-  VoxelGrid grid(0.1);
-  Random random(seed);
-  const auto key = [](int i) { return static_cast<std::uint16_t>(32700 + i); };
-  const auto put = [&](const std::array<int, 3>& at, const std::array<int, 3>& size, Occupancy state) {
-    for (int x = at[0]; x < std::min(at[0] + size[0], 192); ++x)
-      for (int y = at[1]; y < std::min(at[1] + size[1], 160); ++y)
-        for (int z = at[2]; z < std::min(at[2] + size[2], 96); ++z) grid.set({key(x), key(y), key(z)}, state);
-  };
-  put({0, 0, 0}, {192, 160, 96}, Occupancy::kFree);
-  const auto somewhere = [&] { return std::array{random.below(192), random.below(160), random.below(96)}; };
-  for (int i = 0; i < 6; ++i) put(somewhere(), {2, 3, 90}, Occupancy::kOccupied);
-  for (int i = 0; i < 4; ++i) put(somewhere(), {40, 30, 1}, Occupancy::kOccupied);
-  for (int i = 0; i < 30; ++i)
-    put(somewhere(), {1, 1, 1}, i % 2 == 0 ? Occupancy::kOccupied : Occupancy::kUnknown);
-  return grid;
-}
-
-std::vector<VoxelGrid> grids() {
-  std::vector<VoxelGrid> grids;
-  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-    grids.push_back(make_voxel_grid(*make_random_tree(seed, 0.3)));  // as large as the key range: no table
-    grids.push_back(make_voxel_grid(*make_noise_tree(seed, 0.3, 24)));
-  }
-  grids.push_back(corner_grid(0, 5));
-  grids.push_back(corner_grid(65535, 6));
-  grids.push_back(hall_grid(7));
-  return grids;
-}
-
-// All of a map, and a part of it that is cut off on all four sides.
-std::vector<KeyBox> windows(const VoxelGrid& grid) {
-  const KeyBox known = *grid.known_bounds();
-  const auto inner = [](int low, int high) {
-    const int margin = (high - low) / 5;
-    return std::array{(low + margin) & ~7, (high - margin) | 7};
-  };
-  const auto x = inner(known.min.x, known.max.x), y = inner(known.min.y, known.max.y);
-  return {kAllVoxels, {make_key(x[0], y[0], 0), make_key(x[1], y[1], 65535)}};
-}
-
-OpenVoxels table_of(const VoxelGrid& grid, UnknownPolicy unknown, const KeyBox& window) {
-  return {grid, unknown, grid.known_bounds(), window};
-}
-
-TEST(OpenVoxels, EqualTheGridAndAreClosedAroundIt) {
-  for (const VoxelGrid& grid : grids())
-    for (const UnknownPolicy unknown : kPolicies) {
-      const OpenVoxels table = table_of(grid, unknown, kAllVoxels);
-      if (table.empty()) continue;
-      const KeyBox known = *grid.known_bounds();
-      std::size_t open = 0;
-      const auto low = table.layout().corner;
-      for (int z = low[2]; z < (known.max.z | 7) + 9; ++z)
-        for (int y = low[1]; y < (known.max.y | 7) + 9; ++y)
-          for (int x = low[0]; x < (known.max.x | 7) + 9; ++x) {
-            // The border may lie outside the key range: a key would wrap around, an index must not.
-            const VoxelKey key = detail::as_key({x, y, z});
-            const bool is_key = detail::as_array(key) == std::array<int, 3>{x, y, z};
-            if (!is_key) continue;
-            const std::uint32_t index = table.layout().index(key);
-            ASSERT_EQ(table.layout().key(index), (std::array<int, 3>{x, y, z}));
-            const bool expected = table.contains(key) && !detail::blocks(grid.at(key), unknown);
-            ASSERT_EQ(table.open(index), expected);
-            open += expected ? 1 : 0;
-          }
-      EXPECT_GT(open, std::size_t{1000});
-    }
-}
-
-// Compares voxels and radii, at places drawn from the table, with the grid.
-// @return how many cells are open two cells around and more
-std::size_t expect_equal(const OpenVoxels& table, const VoxelGrid& grid, UnknownPolicy unknown,
-                         Random& random, int places = 500) {
-  const auto is_open = [&](const std::array<int, 3>& voxel) {
-    const VoxelKey key = detail::as_key(voxel);
-    return detail::as_array(key) == voxel && table.contains(key) && !detail::blocks(grid.at(key), unknown);
-  };
-  std::size_t wide = 0;
-  for (int i = 0; i < places; ++i) {
-    std::array<int, 3> cell{};
-    for (std::size_t a = 0; a < 3; ++a)
-      cell[a] = table.bounds_min(a) + 4 * random.below((table.bounds_max(a) + 1 - table.bounds_min(a)) / 4);
-    const auto open_cells = [&](int around) {
-      for (int x = cell[0] - 4 * around; x < cell[0] + 4 * around + 4; ++x)
-        for (int y = cell[1] - 4 * around; y < cell[1] + 4 * around + 4; ++y)
-          for (int z = cell[2] - 4 * around; z < cell[2] + 4 * around + 4; ++z)
-            if (!is_open({x, y, z})) return false;
-      return true;
-    };
-    const std::uint32_t index = table.layout().index(detail::as_key(cell));
-    EXPECT_EQ(table.open(index), is_open(cell));
-    const int radius = static_cast<int>(table.radius(index));
-    EXPECT_TRUE(radius == 0 || open_cells(radius - 1));
-    EXPECT_TRUE(radius == 15 || !open_cells(radius));
-    wide += radius >= 2 ? 1 : 0;
-  }
-  return wide;
-}
-
-TEST(OpenVoxels, TellHowFarItIsOpenAroundACell) {
-  Random random(11);
-  for (const VoxelGrid& grid : grids())
-    for (const UnknownPolicy unknown : kPolicies) {
-      const OpenVoxels table = table_of(grid, unknown, kAllVoxels);
-      if (!table.empty()) expect_equal(table, grid, unknown, random);
-    }
-  const VoxelGrid hall = hall_grid(7);
-  EXPECT_GT(
-      expect_equal(table_of(hall, UnknownPolicy::kBlock, kAllVoxels), hall, UnknownPolicy::kBlock, random),
-      100U);
-}
-
-// Scans that change some voxels, uncover what was unknown, or forget a part; now and then beyond the table.
-void expect_followed(UnknownPolicy unknown, std::uint64_t seed, bool whole) {
-  Random random(seed);
-  VoxelGrid grid = hall_grid(seed);
-  const KeyBox window = windows(grid)[whole ? 0 : 1];
-  OpenVoxels table = table_of(grid, unknown, window);
-  KeyBox around = *grid.known_bounds();
-  int followed = 0, outgrown = 0;
-  for (int change = 0; change < 12; ++change) {
-    const VoxelGrid before = grid;
-    if (change % 3 == 2) around = grown(around, 16);
-    const VoxelKey from = random.key_in(around);
-    const KeyBox box = *intersection(
-        {from, make_key(from.x + random.below(30), from.y + random.below(30), from.z + random.below(12))},
-        around);
-    const Occupancy state = detail::kStates[static_cast<std::size_t>(random.below(3))];
-    for_each_key(box, [&](const VoxelKey& key) { grid.set(key, state); });
-    if (random.one_in(3)) grid.fill({make_key(from.x & ~63, from.y & ~63, from.z & ~63), 6}, state);
-    if (table.update(before, grid)) {
-      ++followed;
-    } else {
-      ++outgrown;
-      table = table_of(grid, unknown, window);
-    }
-    expect_equal(table, grid, unknown, random, 40);
-  }
-  EXPECT_GT(followed, 4);
-  EXPECT_GT(outgrown, 0);
-}
-
-TEST(OpenVoxels, FollowAMapThatChangesAndGrows) {
-  for (const bool whole : {true, false})
-    for (const UnknownPolicy unknown : kPolicies)
-      for (std::uint64_t seed = 1; seed <= (long_mode() ? 4 : 2); ++seed) {
-        SCOPED_TRACE(seed);
-        expect_followed(unknown, seed, whole);
-      }
-}
-
-TEST(OpenVoxels, HaveRoomForWhatIsForgotten) {
-  VoxelGrid grid = corner_grid(0, 5);
-  const VoxelKey lone{80, 20, 20};  // alone in its cube of 64 voxels
-  grid.set(lone, Occupancy::kFree);
-  for (const UnknownPolicy unknown : kPolicies) {
-    OpenVoxels table = table_of(grid, unknown, kAllVoxels);
-    VoxelGrid after = grid;
-    after.set(lone, Occupancy::kUnknown);
-    EXPECT_TRUE(table.update(grid, after));
-    EXPECT_EQ(table.open(table.layout().index(lone)), !detail::blocks(Occupancy::kUnknown, unknown));
-  }
-}
-
-TEST(OpenVoxels, StayEmptyWhereThereIsNothingOrFarTooMuch) {
-  VoxelGrid grid(0.1);
-  EXPECT_TRUE(table_of(grid, UnknownPolicy::kBlock, kAllVoxels).empty());
-  grid.set({1, 1, 1}, Occupancy::kFree);
-  EXPECT_FALSE(table_of(grid, UnknownPolicy::kBlock, kAllVoxels).empty());
-  grid.set({60000, 60000, 60000}, Occupancy::kFree);
-  EXPECT_TRUE(table_of(grid, UnknownPolicy::kPass, kAllVoxels).empty());
-  EXPECT_FALSE(table_of(grid, UnknownPolicy::kPass, kAllVoxels).contains({1, 1, 1}));
 }
 
 TEST(PacketWalk, SeesWhatTheWalkSees) {
