@@ -39,7 +39,7 @@ class Columns {
         static_cast<unsigned>(_mm512_cmpgt_epi32_mask(over, all(kEndOfTime))) << 1U & 0xFFFFU;
     const unsigned ends = closed_start | closed_between | closed_end | unclear | late;
     if (ends == 0) {
-      t[main_] += 15 * second(crossings_);
+      t[main_] = last(over);
       t[one_.axis] = last(one.crossed);
       t[two_.axis] = last(two.crossed);
       index = static_cast<std::uint32_t>(last(at_start) ^ flip_);
@@ -91,7 +91,6 @@ class Columns {
   }
   // Each lane's value in the next one, and another in the first.
   static __m512i moved_on(__m512i v, __m512i into_first) { return _mm512_alignr_epi32(v, into_first, 15); }
-  static int second(__m512i v) { return _mm_extract_epi32(_mm512_castsi512_si128(v), 1); }
   static int last(__m512i v) { return _mm_extract_epi32(_mm512_extracti32x4_epi32(v, 3), 3); }
   static __m512i either(__m512i a, __m512i b, __m512i c) { return _mm512_ternarylogic_epi32(a, b, c, 0xFE); }
 
