@@ -126,6 +126,9 @@ TEST_F(ExploreMotion, ItsFilesAgree) {
     EXPECT_NEAR(by_robot.at(names[r]).at("revisited"), test::plain_revisited_part(went[r]), 0.02);
     EXPECT_NEAR(json.at("path_length_m").at(names[r]), metres[r], 0.05 * metres[r]);
     EXPECT_EQ(by_robot.at(names[r]).at("held_back"), 0);
+    const Pose& start = recording.head.starts[r].pose;
+    const std::vector<double> place{start.position.x(), start.position.y(), start.position.z(), start.yaw};
+    EXPECT_EQ(by_robot.at(names[r]).at("start"), place);
     idle += by_robot.at(names[r]).at("idle_s").get<double>();
   }
   constexpr double kTick = 0.02;  // [s] one in which a robot sets out is not idle

@@ -66,7 +66,7 @@ class BrickTable {
  private:
   [[nodiscard]] std::size_t find_slot(std::uint64_t number) const {
     const std::size_t mask = slots_.size() - 1;
-    auto at = static_cast<std::size_t>((number * 0x9E37'79B9'7F4A'7C15) >> 32) & mask;
+    std::size_t at = (number * 0x9E37'79B9'7F4A'7C15) >> 32 & mask;
     while (slots_[at] != 0 && entries_[slots_[at] - 1].number != number) at = (at + 1) & mask;
     return at;
   }

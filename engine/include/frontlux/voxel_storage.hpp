@@ -111,7 +111,7 @@ struct Branch {
   static constexpr int kChildBits = kBits;
   static constexpr int kLog2 = Child::kLog2 + kBits;
   static constexpr int kChildren = 1 << (3 * kBits);
-  std::array<std::uint16_t, kChildren> slots{};
+  std::array<std::uint16_t, static_cast<std::size_t>(kChildren)> slots{};
   std::vector<Shared<Child>> nodes;
   std::vector<std::uint16_t> unused;
 

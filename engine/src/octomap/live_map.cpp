@@ -10,21 +10,39 @@
 namespace frontlux {
 namespace {
 
-// So that the tree reports changes from now on.
-const Octree& watched(const Octree& tree) {
-  std::visit(
-      [](const auto& t) {
-        detail::there(t)->enableChangeDetection(true);
-        t->resetChangeDetection();
-      },
-      tree);
-  return tree;
-}
+// Makes a tree report changes. One that did not do so before does not do so afterwards.
+class ChangeDetection {
+ public:
+  explicit ChangeDetection(const Octree& tree) : tree_(tree) {
+    std::visit([this](const auto& t) { was_on_ = detail::there(t)->isChangeDetectionEnabled(); }, tree_);
+    restart();
+  }
+  ChangeDetection(const ChangeDetection&) = delete;
+  ChangeDetection& operator=(const ChangeDetection&) = delete;
+  ~ChangeDetection() { set(was_on_); }
+
+  // What has changed so far is not reported any more.
+  void restart() { set(true); }
+
+ private:
+  void set(bool on) {
+    std::visit(
+        [on](const auto& t) {
+          t->enableChangeDetection(on);
+          t->resetChangeDetection();
+        },
+        tree_);
+  }
+
+  Octree tree_;
+  bool was_on_ = false;
+};
 
 }  // namespace
 
 struct LiveMap::State {
   Octree tree;
+  ChangeDetection detection;
   OctreeMirror mirror;
   VoxelGrid told;  // the map of the last account: what throws before the next one loses no change
   std::unique_ptr<RayCaster> caster;
@@ -32,7 +50,8 @@ struct LiveMap::State {
 
   explicit State(Octree map)
       : tree(std::move(map)),
-        mirror(watched(tree)),
+        detection(tree),
+        mirror(tree),
         told(mirror.grid()),
         caster(make_ray_caster(mirror.grid())) {}
 
@@ -45,7 +64,7 @@ struct LiveMap::State {
   }
 
   MapChange take_in() {
-    watched(tree);
+    detection.restart();
     caster->update(mirror.grid());
     keys.clear();
     try {

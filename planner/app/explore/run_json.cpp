@@ -81,7 +81,9 @@ std::string write_run_json(const ExploreRun& run, const ExploreOptions& options,
     names.push_back(name);
     lengths[name] = sums.travelled[r];
     const RobotNumbers& robot = numbers.robots[r];
-    robots[name] = {{"length_m", robot.length},
+    const planner::Pose& start = setup.head.starts[r].pose;
+    robots[name] = {{"start", {start.position.x(), start.position.y(), start.position.z(), start.yaw}},
+                    {"length_m", robot.length},
                     {"revisited", robot.revisited},
                     {"idle_s", robot.idle},
                     {"held_back", robot.held_back},

@@ -27,10 +27,12 @@ std::string late_planning(double planning, double latency) {
 std::string why_unseen(const sim::Unseen& unseen) {
   std::string text;
   if (unseen.in_view >= sim::kMuchUnseen)
-    text += "; " + percent(unseen.in_view) +
-            " could have been seen from places where they fit, but they did not get there through what they "
-            "knew to be free, or would have seen too little there (on tours less than some 1.5 m2 of "
-            "frontiers in one place, else fewer than --epsilon; --goal nearest or render goes to less)";
+    text +=
+        "; " + percent(unseen.in_view) +
+        " could have been seen from places where they fit, but they did not get there through what they "
+        "knew to be free, or would have seen too little there (on tours less than some 1.5 m2 of "
+        "frontiers in one place, or 0.5 m2 before a wide space, else fewer than --epsilon; --goal nearest or "
+        "render goes to less)";
   if (unseen.hidden >= sim::kMuchUnseen)
     text += "; " + percent(unseen.hidden) +
             " are hidden from everywhere, or out of the reach of their sensors (range_m, vertical_deg)";

@@ -148,8 +148,9 @@ void find_starts(const GivenStarts& given, const Eigen::Vector3d& around, Explor
   for (std::size_t r = 0; r < robots.size(); ++r) {
     if (!starts[r])
       throw BadInput(setup.sourced.world.name + ": the robot '" + robots[r].robot.name +
-                     "' does not fit within 15 m of the start; give another --start, or its --pose, "
-                     "or check its body and its heights");
+                     "' does not fit within 15 m of the start at " +
+                     to_text(Eigen::Vector3f(around.cast<float>())) +
+                     " m; give another --start, or its --pose, or check its body and its heights");
     if (robots[r].robot.travel.drives())
       ground =
           std::max(ground.value_or(-1e300), starts[r]->position.z() - robots[r].robot.travel.sensor_height);

@@ -109,7 +109,7 @@ void FrontierClusters::find_neighbors_of_small_pieces(const std::map<VoxelKey, K
 }
 
 // The pieces in order; those that are too small together with the largest ones that they touch, up to a
-// width, and beyond it once where they would be left out. What is too small all the same is left out.
+// width, and beyond it once where they would be left out.
 std::vector<FrontierClusters::Part> FrontierClusters::joined_pieces() const {
   std::vector<std::uint32_t> joined_to(pieces_.size());  // itself: the first piece of a cluster
   std::iota(joined_to.begin(), joined_to.end(), 0U);
@@ -143,9 +143,16 @@ std::vector<FrontierClusters::Part> FrontierClusters::joined_pieces() const {
   for (const std::uint32_t piece : order) all[first_of(piece)].push_back(piece);
   std::vector<Part> joined;
   for (const std::uint32_t piece : order)
-    if (!all[piece].empty() && sizes[piece] >= least_)
-      joined.push_back({std::move(all[piece]), sizes[piece]});
+    if (!all[piece].empty()) joined.push_back({std::move(all[piece]), sizes[piece]});
   return joined;
+}
+
+FrontierClusters::Keys FrontierClusters::keys_of(const Part& part) const {
+  Keys keys;
+  for (const std::uint32_t piece : part.pieces)
+    keys.insert(keys.end(), pieces_[piece].keys.begin(), pieces_[piece].keys.end());
+  std::ranges::sort(keys);
+  return keys;
 }
 
 std::vector<std::uint64_t> FrontierClusters::revisions_of(const Part& part) const {
@@ -176,21 +183,19 @@ ClusterId FrontierClusters::name_for(const Keys& keys, const Ids& taken) {
 // Of pieces that were not together before, or were others.
 FrontierCluster FrontierClusters::make_cluster(const Part& part, const Ids& taken) {
   FrontierCluster cluster;
-  cluster.box = pieces_[part.pieces.front()].box;
-  for (const std::uint32_t piece : part.pieces) {
-    const Keys& keys = pieces_[piece].keys;
-    cluster.keys.insert(cluster.keys.end(), keys.begin(), keys.end());
-    cluster.box = hull(cluster.box, pieces_[piece].box);
-  }
-  std::ranges::sort(cluster.keys);
+  cluster.keys = keys_of(part);
+  cluster.box = bounds_of(cluster.keys);
   cluster.id = name_for(cluster.keys, taken);
   return cluster;
 }
 
 // Of all pieces, the largest first. One of the same pieces as before is what it was, and keeps its id if no
-// larger one has it: all of its frontiers were in it.
-void FrontierClusters::make_clusters() {
+// larger one has it: all of its frontiers were in it. What is too small is left out.
+void FrontierClusters::make_clusters(const Exceptions& exceptions) {
   std::vector<Part> parts = joined_pieces();
+  std::erase_if(parts, [&](const Part& part) {
+    return part.size < least_ && !(exceptions && exceptions(keys_of(part)));
+  });
   std::ranges::stable_sort(parts, [](const Part& a, const Part& b) { return a.size > b.size; });
   for (Piece& piece : pieces_) piece.cluster = ClusterId::kNone;
   std::vector<FrontierCluster> now;
@@ -226,16 +231,17 @@ void FrontierClusters::make_clusters() {
 
 const FrontierCluster& FrontierClusters::cluster(ClusterId id) const { return clusters_[places_.at(id)]; }
 
-void FrontierClusters::set_least(std::size_t least) {
+void FrontierClusters::set_least(std::size_t least, const Exceptions& exceptions) {
   least = std::max<std::size_t>(least, 1);
-  if (std::exchange(least_, least) == least) return;
+  const bool had_exceptions = std::exchange(has_exceptions_, static_cast<bool>(exceptions));
+  if (std::exchange(least_, least) == least && had_exceptions == has_exceptions_) return;
   for (std::uint32_t piece = 1; piece < pieces_.size(); ++piece)
     if (!pieces_[piece].keys.empty() && pieces_[piece].keys.size() < least_)
       pieces_[piece].joins = piece_for(piece);
-  make_clusters();
+  make_clusters(exceptions);
 }
 
-void FrontierClusters::update(std::span<const VoxelKey> frontiers) {
+void FrontierClusters::update(std::span<const VoxelKey> frontiers, const Exceptions& exceptions) {
   Keys changed;
   std::ranges::set_symmetric_difference(frontiers_, frontiers, std::back_inserter(changed));
   if (changed.empty()) return;
@@ -251,7 +257,7 @@ void FrontierClusters::update(std::span<const VoxelKey> frontiers) {
     if (cube.frontiers.empty()) cubes_.erase(at);
   }
   find_neighbors_of_small_pieces(changed_in);
-  make_clusters();
+  make_clusters(exceptions);
 }
 
 }  // namespace frontlux::planner::detail

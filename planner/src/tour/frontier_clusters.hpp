@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <span>
 #include <unordered_map>
@@ -39,12 +40,15 @@ class FrontierClusters {
   /// @param least   [frontiers] smaller clusters are left out
   FrontierClusters(const KeyBox& bounds, int edge, std::size_t least);
 
-  /// Another least size from now on. All clusters are made again.
-  void set_least(std::size_t least);
+  /// Whether frontiers that are too few for a cluster make one all the same.
+  using Exceptions = std::function<bool(std::span<const VoxelKey>)>;
+
+  /// Another least size from now on, or other exceptions than none. All clusters are made again.
+  void set_least(std::size_t least, const Exceptions& exceptions = {});
   [[nodiscard]] std::size_t least() const { return least_; }
 
   /// @param frontiers  sorted
-  void update(std::span<const VoxelKey> frontiers);
+  void update(std::span<const VoxelKey> frontiers, const Exceptions& exceptions = {});
 
   /// By their first key.
   [[nodiscard]] std::span<const FrontierCluster> clusters() const { return clusters_; }
@@ -87,13 +91,15 @@ class FrontierClusters {
   [[nodiscard]] std::uint32_t piece_for(std::uint32_t small) const;
   void find_neighbors_of_small_pieces(const std::map<VoxelKey, Keys>& changed);
   [[nodiscard]] std::vector<Part> joined_pieces() const;
+  [[nodiscard]] Keys keys_of(const Part& part) const;
   [[nodiscard]] std::vector<std::uint64_t> revisions_of(const Part& part) const;
   [[nodiscard]] FrontierCluster make_cluster(const Part& part, const Ids& taken);
   [[nodiscard]] ClusterId name_for(const Keys& keys, const Ids& taken);
-  void make_clusters();
+  void make_clusters(const Exceptions& exceptions);
 
   int edge_;
   std::size_t least_;
+  bool has_exceptions_ = false;
   std::vector<FrontierCluster> clusters_;
   Keys frontiers_;
   std::unordered_map<ClusterId, std::size_t> places_;  // among the clusters

@@ -199,13 +199,14 @@ void TourPlanning::update_map(const Query& query) {
     if (const auto known = query.grid.known_bounds()) changes.assign(1, *known);
   const std::vector<KeyBox> cells = update_distances(query, changes);
   for_each_index(members_.size() + 1, [&](std::size_t r) {
-    if (r == members_.size()) return clusters_.update(query.frontiers);  // at the same time
+    if (r == members_.size())
+      return clusters_.update(query.frontiers, openings(query.grid));  // at the same time
     // Another robot may be where there was no place when it made its tour. It starts from where it did then.
     const auto cell = lattice_.key(query.starts[r].pose.position);
     GraphDistances& distances = members_[r].distances;
     if (r == query.robot || (cell && distances.graph().fits(*cell))) distances.start_from(cell);
   });
-  if (least_left_ < std::numeric_limits<double>::infinity()) lower_least_sizes(query.grid);
+  if (looks_closer()) lower_least_sizes(query.grid);
   const std::function<bool(const VoxelKey&)> can_go = [&](const VoxelKey& cell) {
     return reaches(query, cell);
   };

@@ -142,6 +142,8 @@ class TourPlanning {
   std::vector<KeyBox> update_distances(const Query& query, std::span<const KeyBox> changes);
   [[nodiscard]] bool nobody_sees_any() const;
   bool lower_least_sizes(const VoxelGrid& grid);
+  [[nodiscard]] bool looks_closer() const { return least_left_ < std::numeric_limits<double>::infinity(); }
+  [[nodiscard]] FrontierClusters::Exceptions openings(const VoxelGrid& grid) const;
   [[nodiscard]] static std::size_t least_frontiers(const Lattice& lattice);
   [[nodiscard]] ViewpointQuery sight_of(std::size_t robot, const RayCaster& caster,
                                         const VoxelGrid& grid) const;

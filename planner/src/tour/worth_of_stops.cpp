@@ -1,5 +1,6 @@
 // What is worth a stop, and a closer look at what is left when nothing is.
 
+#include "tour/space_behind.hpp"
 #include "tour/tour_planning.hpp"
 
 #include <algorithm>
@@ -41,6 +42,25 @@ bool TourPlanning::nobody_sees_any() const {
   });
 }
 
+// From the closer look on: frontiers in a narrow door or a hatch are fewer than those of many leftovers. That
+// a wide space begins behind them tells them apart; cracks lead into walls. Of a few large voxels neither is
+// certain, and doors of that size are narrow for robots.
+FrontierClusters::Exceptions TourPlanning::openings(const VoxelGrid& grid) const {
+  constexpr double kLeastArea = 0.5;  // [m2]
+  constexpr double kFewest = 15;      // [frontiers]
+  constexpr double kWide = 0.9;       // [m]
+  constexpr double kDepth = 1.5;      // [m] up to which it begins
+  if (!looks_closer()) return {};
+  const double edge = lattice_.resolution();
+  const double least = std::max(kFewest, kLeastArea / (edge * edge) - 1e-6);
+  const int half = std::max(1, static_cast<int>(kWide / 2 / edge + 1e-6));
+  const int steps = static_cast<int>(std::lround(kDepth / edge));
+  return [this, &grid, least, half, steps](std::span<const VoxelKey> frontiers) {
+    return static_cast<double>(frontiers.size()) >= least &&
+           lead_to_space(grid, bounds_, frontiers, half, steps);
+  };
+}
+
 // A small world has nothing larger than what is left to those who come by in a large one.
 // @return whether less is asked for than before
 bool TourPlanning::lower_least_sizes(const VoxelGrid& grid) {
@@ -49,7 +69,7 @@ bool TourPlanning::lower_least_sizes(const VoxelGrid& grid) {
   const double before = least_left_;
   least_left_ = std::max({1.0, kPart * static_cast<double>(free + occupied), options_.least_gain / 20});
   const std::size_t least = least_frontiers(lattice_);
-  clusters_.set_least(std::min(least, static_cast<std::size_t>(least_left_)));
+  clusters_.set_least(std::min(least, static_cast<std::size_t>(least_left_)), openings(grid));
   return least_left_ < std::min(before, std::max(options_.least_gain, static_cast<double>(least)));
 }
 
@@ -58,8 +78,11 @@ bool TourPlanning::lower_least_sizes(const VoxelGrid& grid) {
 void TourPlanning::look_closer(const Query& query,
                                const std::function<ClusterSights::Query(const ViewpointQuery&)>& sights) {
   ClusterSights& own = members_[query.robot].sights;
-  if (lower_least_sizes(query.grid)) {
+  const bool is_first = !looks_closer();  // from now on openings are clusters, too
+  const bool asks_less = lower_least_sizes(query.grid);
+  if (asks_less)
     for (Member& member : members_) member.sights.look_again();
+  if (asks_less || is_first) {
     own.update(sights(sight_of(query.robot, query.caster, query.grid)));
     if (!nobody_sees_any()) return;
   }

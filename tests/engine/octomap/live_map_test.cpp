@@ -91,6 +91,25 @@ TEST(LiveMap, SharesTheTreeOfAFile) {
   EXPECT_TRUE(moved.grid() == make_voxel_grid(*room));
 }
 
+TEST(LiveMap, LeavesTheTreesChangeDetectionAsItWas) {
+  for (const bool was_on : {false, true}) {
+    octomap::OcTree tree(0.2);
+    tree.enableChangeDetection(was_on);
+    {
+      LiveMap map(tree);
+      tree.updateNode(octomap::point3d(0.1F, 0.1F, 0.1F), true);
+      EXPECT_EQ(map.update().keys.size(), 1U);
+      LiveMap moved(std::move(map));
+      tree.updateNode(octomap::point3d(0.5F, 0.1F, 0.1F), true);
+      EXPECT_EQ(moved.update().keys.size(), 1U);
+    }
+    EXPECT_EQ(tree.isChangeDetectionEnabled(), was_on);
+    EXPECT_EQ(tree.numChangesDetected(), 0U);
+    tree.updateNode(octomap::point3d(0.9F, 0.1F, 0.1F), true);
+    EXPECT_EQ(tree.numChangesDetected(), was_on ? 1U : 0U);
+  }
+}
+
 TEST(LiveMap, TellsOfAChangeAfterAnUpdateThatFailed) {
   octomap::OcTree tree(0.1);
   tree.updateNode(octomap::point3d(0.05F, 0.05F, 0.05F), false);

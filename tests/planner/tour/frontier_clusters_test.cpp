@@ -202,5 +202,33 @@ TEST(FrontierClusters, AreTheSameAsNewOnes) {
   }
 }
 
+TEST(FrontierClusters, HoldFewFrontiersWhereThereAreExceptions) {
+  constexpr std::size_t kLeast = 12;
+  const auto is_even = [](std::span<const VoxelKey> keys) { return keys.size() % 2 == 0; };
+  Random random(44);
+  FrontierClusters kept(kBounds, 6, kLeast);
+  std::size_t exceptions = 0, left_out = 0;
+  for (int round = 0; round < 200; ++round) {
+    const Keys frontiers = random_frontiers(random, random.below(10));
+    const bool excepts = random.one_in(2);
+    kept.set_least(kLeast, excepts ? is_even : FrontierClusters::Exceptions());
+    kept.update(frontiers, excepts ? is_even : FrontierClusters::Exceptions());
+    FrontierClusters all(kBounds, 6, kLeast);  // of any size
+    all.update(frontiers, [](std::span<const VoxelKey>) { return true; });
+    std::vector<Keys> expected, found;
+    for (const FrontierCluster& cluster : all.clusters()) {
+      const bool is_small = cluster.keys.size() < kLeast;
+      const bool counts = !is_small || (excepts && is_even(cluster.keys));
+      if (counts) expected.push_back(cluster.keys);
+      if (counts && is_small) ++exceptions;
+      if (!counts) ++left_out;
+    }
+    for (const FrontierCluster& cluster : kept.clusters()) found.push_back(cluster.keys);
+    EXPECT_EQ(found, expected);
+  }
+  EXPECT_GT(exceptions, 10U);
+  EXPECT_GT(left_out, 10U);
+}
+
 }  // namespace
 }  // namespace frontlux::planner::detail

@@ -429,6 +429,47 @@ TEST(TourPlanning, LeavesFlatPatchesThatKeepNobodyFromAnything) {
   EXPECT_TRUE(hall.planning->tour(0).empty());
 }
 
+// A closed hall, all of it known but what begins at an opening in its end wall: so many layers of voxels.
+struct Opening {
+  static constexpr KeyBox kHall{{32750, 32750, 32768}, {32829, 32800, 32779}};
+  static constexpr KeyBox kSpace = grown(kHall, 12, 1, 1);
+  VoxelGrid grid{kResolution};
+  Robot robot{"uav", {}, test::camera(5.0), {}};
+  std::optional<TourPlanning> planning;
+
+  Opening(int width, int height, int depth) {
+    robot.travel.extents = {0.4, 0.4, 0.4};
+    robot.travel.min_height = -100.0;
+    test::fill(grid, kSpace, Occupancy::kOccupied);
+    test::fill(grid, kHall, Occupancy::kFree);
+    test::fill(grid, {make_key(32830, 32770, 32768), make_key(32830, 32769 + width, 32767 + height)},
+               Occupancy::kUnknown);
+    if (depth > 1)  // a room, or the inside of a wall
+      test::fill(grid, {make_key(32831, 32755, 32768), make_key(32829 + depth, 32795, 32779)},
+                 Occupancy::kUnknown);
+    const VoxelKey at = make_key(32810, 32775, 32773);
+    MotionState start;
+    start.pose.position = grid.lattice().exact_center(at);
+    planning.emplace(std::vector{robot}, std::span(&start.pose, 1), grid.lattice(), kSpace,
+                     TourPlanning::Options{});
+    TravelCorridor corridor(robot.travel, grid.lattice(), kSpace);
+    corridor.update({grid}, at);
+    const auto caster = make_grid_ray_caster(grid);
+    const FrontierSet frontiers(grid, kSpace);
+    planning->update({0, *caster, grid, corridor, frontiers.keys(), {&start, 1}});
+  }
+  [[nodiscard]] std::size_t stops() const { return planning->tour(0).size(); }
+};
+
+TEST(TourPlanning, LeadsThroughNarrowDoorsAtTheEnd) {
+  EXPECT_EQ(Opening(3, 10, 10).stops(), 1U) << "1.2 m2, 30 frontiers";
+  EXPECT_EQ(Opening(4, 4, 10).stops(), 1U) << "0.64 m2, 16";
+  EXPECT_EQ(Opening(3, 4, 10).stops(), 0U) << "0.48 m2, 12";
+  EXPECT_EQ(Opening(3, 10, 1).stops(), 0U) << "a niche";
+  EXPECT_EQ(Opening(3, 10, 5).stops(), 0U) << "a crack in a wall that is hollow, 0.8 m";
+  EXPECT_EQ(Opening(3, 10, 6).stops(), 1U) << "a wardrobe, 1.0 m";
+}
+
 // One robot sees nothing, and another one can get nowhere: that smaller clusters are worth a stop from now on
 // is decided once it stays so.
 TEST(TourPlanning, AsksForNoLessWhileARobotIsStuckForAMoment) {
