@@ -77,6 +77,22 @@ TEST_F(ExploreUnseen, TellsItBesideThatMuchIsLeft) {
   expect_parts(answer.out, {"\ncube         travelled ", " times; " + goal + "\n"});
 }
 
+TEST_F(ExploreUnseen, TellsThatRaysLeaveHolesBesideThatMuchIsLeft) {
+  ASSERT_EQ(explore("dense", "0.9", false).code, 0);
+  const std::string dense = json_in("dense").at("warnings").at(0);
+  EXPECT_EQ(dense.find("rays of"), std::string::npos) << "0.25 m apart: " << dense;
+  std::string text = test::content_of(path("cube.json"));
+  text.replace(text.find(R"("columns": 64)"), 13, R"("columns": 32)");
+  write("few.json", text);
+  const Answer answer =
+      run({path("rooms.ply"), "--start", "1.5,2,1.1", "--ground", "off", "--resolution", "0.2", "--team", "",
+           "--robot", path("few.json"), "--report", "off", "-o", path("few")});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  expect_parts(json_in("few").at("warnings").at(0),
+               {"; the rays of cube are 0.50 m apart at its range, and leave holes between them in voxels of "
+                "0.2 m"});
+}
+
 TEST_F(ExploreUnseen, TellsThatARobotStartsFarFromWhereItWasAskedTo) {
   ASSERT_EQ(explore("run", "0.9", true, {"--stop-time", "0.5"}).code, 0);
   EXPECT_EQ(json_in("run").at("warnings"), json::array());

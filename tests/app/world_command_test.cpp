@@ -1,3 +1,4 @@
+#include "sim/mesh/box_mesh.hpp"
 #include "support/command_test.hpp"
 #include "support/giant_leaf.hpp"
 
@@ -8,18 +9,19 @@
 
 #include <octomap/OcTree.h>
 
-namespace frontlux::sim {
+namespace frontlux::test {
 namespace {
 
-using test::content_of;
+using sim::World, sim::built_in_worlds, sim::make_map_world, sim::make_world, sim::read_mesh_world,
+    sim::solid_volume, sim::write_ply;
 
-class WorldCommand : public test::CommandTest {
+class WorldCommand : public CommandTest {
  protected:
   WorldCommand() : CommandTest("world") {}
 
   // A box of 4 x 5 x 6 units on z = 0 whose corners are `scale` times as far.
   std::string box(const std::string& name, float scale = 1) const {
-    TriangleMesh mesh;
+    sim::TriangleMesh mesh;
     for (const float z : {0.F, 6.F})
       for (const float y : {0.F, 5.F})
         for (const float x : {0.F, 4.F}) mesh.vertices.emplace_back(x * scale, y * scale, z * scale);
@@ -52,6 +54,27 @@ TEST_F(WorldCommand, MeasuresABox) {
        "surface      148 m^2\n", "free         not known: the surface faces outwards", "start        none"});
   expect_answer({path("box.ply"), "--scale", "0.5", "--up", "y"},
                 {"size         2 x 3 x 2.5 m", "y     -3 to 0 m"});
+}
+
+// Six slabs around a room, as solids and with all triangles turned over.
+TEST_F(WorldCommand, NotesThatTrianglesFaceTheWrongWay) {
+  World world;
+  using Eigen::Vector3f;
+  for (const auto& [low, high] : {std::pair(Vector3f(0, 0, 0), Vector3f(4.5F, 3.5F, 0.25F)),
+                                  {Vector3f(0, 0, 2.25F), Vector3f(4.5F, 3.5F, 2.5F)},
+                                  {Vector3f(0, 0, 0.25F), Vector3f(0.25F, 3.5F, 2.25F)},
+                                  {Vector3f(4.25F, 0, 0.25F), Vector3f(4.5F, 3.5F, 2.25F)},
+                                  {Vector3f(0.25F, 0, 0.25F), Vector3f(4.25F, 0.25F, 2.25F)},
+                                  {Vector3f(0.25F, 3.25F, 0.25F), Vector3f(4.25F, 3.5F, 2.25F)}})
+    sim::test::add_box(world.mesh, {low, high});
+  write_ply(path("room.ply"), world.mesh);
+  for (auto& triangle : world.mesh.triangles) std::swap(triangle[1], triangle[2]);
+  write_ply(path("turned.ply"), world.mesh);
+  const auto arguments = [&](const std::string& name) {
+    return std::vector<std::string>{path(name), "--start", "2,2,1", "--resolution", "0.1"};
+  };
+  expect_answer(arguments("room.ply"), {"free         24 m^3, of 39.375 m^3 within the bounds"});
+  expect_answer(arguments("turned.ply"), {"free         not known: more of it can be observed"});
 }
 
 TEST_F(WorldCommand, AlignsTheGround) {
@@ -142,14 +165,14 @@ TEST_F(WorldCommand, ReplacesALinkByTheFile) {
 
 // Before its surface is made, of which there is too much as well.
 TEST_F(WorldCommand, RefusesATooLargeMapByItsBounds) {
-  const std::string map = write("giant.bt", test::giant_leaf(3, test::kOccupiedLeaf));
+  const std::string map = write("giant.bt", giant_leaf(3, kOccupiedLeaf));
   expect_refused({map},
                  {"giant.bt: 819.3 x 819.3 x 819.3 m are", "too many: a map holds at most 2147483648"});
   expect_refused({map, "--resolution", "5"}, {"giant.bt: the map's occupied voxels have more than"});
 }
 
 TEST_F(WorldCommand, ComplainsOnOneLineWhateverAFileIsCalled) {
-  const test::Answer answer = run({path("a\nb\x1b[31m.ply")});
+  const Answer answer = run({path("a\nb\x1b[31m.ply")});
   EXPECT_EQ(answer.code, 2);
   EXPECT_EQ(std::ranges::count(answer.err, '\n'), 1) << answer.err;
   EXPECT_NE(answer.err.find("a?b?[31m.ply"), std::string::npos) << answer.err;
@@ -164,11 +187,11 @@ TEST_F(WorldCommand, RefusesAbsurdSizesAndWarnsOfLargeOnes) {
       {"4000 x 5000 x 6000 m", "e+12 voxels", "at most 536800000 of a mesh so small", "--scale", "box_m"});
   EXPECT_FALSE(std::filesystem::exists(path("out.ply")));
   expect_answer({path("mm.ply"), "--scale", "0.001"}, {"4 x 5 x 6 m"});
-  const test::Answer large = run({path("mm.ply"), "--scale", "0.04"});  // 160 x 200 x 240 m
+  const Answer large = run({path("mm.ply"), "--scale", "0.04"});  // 160 x 200 x 240 m
   EXPECT_EQ(large.code, 0);
   EXPECT_TRUE(large.err.starts_with("frontlux: warning: ")) << large.err;
-  test::expect_parts(large.err, {"voxels of 0.3 m", "--scale"});
+  expect_parts(large.err, {"voxels of 0.3 m", "--scale"});
 }
 
 }  // namespace
-}  // namespace frontlux::sim
+}  // namespace frontlux::test

@@ -32,12 +32,16 @@ void print_list() {
   std::cout << out;
 }
 
-std::string free_volume_text(const sim::World& world) {
+// @param seen  [m3] free space that is known to be there
+std::string free_volume_text(const sim::World& world, double seen) {
   const auto solid = sim::solid_volume(world.mesh);
   if (!solid) return "not known: the surface is not closed, or its triangles are oriented differently";
   // A surface that faces inwards, towards free space, holds just that.
   const double free = *solid >= 0.0 ? world.bounds.volume() - *solid : -*solid;
   if (free < 0.0) return "not known: solids overlap";
+  constexpr double kRounding = 1.1;  // of volumes in voxels
+  if (seen > kRounding * free)
+    return "not known: more of it can be observed than the surface says; do its triangles face inwards?";
   constexpr double kFilled = 1e-6;  // of the bounds
   if (free <= kFilled * world.bounds.volume())
     return "not known: the surface faces outwards, as that of a solid that fills the bounds";
@@ -51,27 +55,34 @@ std::string start_text(const sim::World& world) {
          (floor ? "above a floor at z = " + rounded(*floor) + " m" : "with no floor below");
 }
 
-std::string observable_text(const SourcedWorld& sourced, double resolution) {
-  if (!sourced.world.start) return "not known: give --start";
+struct Observable {
+  std::string text;
+  double free = 0.0;  // [m3]
+};
+
+Observable find_observable(const SourcedWorld& sourced, double resolution) {
+  if (!sourced.world.start) return {"not known: give --start"};
   if (sourced.voxels > kManyVoxels)
-    return "not counted: more than " + rounded(kManyVoxels) + " voxels; give a larger --resolution";
+    return {"not counted: more than " + rounded(kManyVoxels) + " voxels; give a larger --resolution"};
   try {
     const WorkingLine working("looking for what can be observed");
     const sim::GroundTruth truth(
         sourced.world, resolution,
         sim::free_start(sourced.world, resolution, sourced.kind != WorldKind::kMesh));
     const double voxel = resolution * resolution * resolution;
-    return rounded(static_cast<double>(truth.observable_voxels()) * voxel) +
-           " m^3: " + std::to_string(truth.free_voxels()) + " free voxels and " +
-           std::to_string(truth.surface_voxels()) + " on their surface";
+    return {rounded(static_cast<double>(truth.observable_voxels()) * voxel) +
+                " m^3: " + std::to_string(truth.free_voxels()) + " free voxels and " +
+                std::to_string(truth.surface_voxels()) + " on their surface",
+            static_cast<double>(truth.free_voxels()) * voxel};
   } catch (const std::exception& error) {
-    return std::string("not known: ") + error.what();
+    return {std::string("not known: ") + error.what()};
   }
 }
 
 void print_text(const SourcedWorld& sourced, const WorldSource& source) {
   const sim::World& world = sourced.world;
   const Eigen::Vector3d size = world.bounds.sizes();
+  const Observable observable = find_observable(sourced, source.resolution);
   const auto axis = [&](const char* label, int i) {
     return row(label, rounded(world.bounds.min()[i]) + " to " + rounded(world.bounds.max()[i]) + " m");
   };
@@ -82,8 +93,8 @@ void print_text(const SourcedWorld& sourced, const WorldSource& source) {
          axis("bounds x", 0) + axis("       y", 1) + axis("       z", 2) +
          row("triangles", std::to_string(world.mesh.triangles.size())) +
          row("surface", rounded(sim::surface_area(world.mesh)) + " m^2") +
-         row("free", free_volume_text(world)) + row("start", start_text(world)) +
-         row("observable", observable_text(sourced, source.resolution));
+         row("free", free_volume_text(world, observable.free)) + row("start", start_text(world)) +
+         row("observable", observable.text);
   if (source.ground) out += row("ground", "shifted by " + rounded(sourced.ground_shift) + " m along z");
   std::cout << out;
 }

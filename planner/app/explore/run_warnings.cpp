@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace frontlux::app {
 namespace {
@@ -84,6 +85,41 @@ std::optional<std::string> far_start(const ExploreSetup& setup, std::size_t robo
          fixed(away, 1) + " m from the start that was given, as it does not fit nearer to that";
 }
 
+// [m] How far the rays of a scan are from each other at the sensor's range, along the axis where it is more.
+double between_rays(const planner::RobotDescription& robot) {
+  const FieldOfView& view = robot.robot.view;
+  const auto columns = static_cast<double>(robot.columns), rows = static_cast<double>(robot.rows);
+  double across = 0.0, up = 0.0;
+  switch (view.shape) {
+    case FieldOfView::Shape::kSpinning:
+      across = 2.0 * std::numbers::pi / columns;
+      up = view.vertical / rows;
+      break;
+    case FieldOfView::Shape::kPyramid:
+      across = 2.0 * std::tan(view.horizontal / 2.0) / columns;
+      up = 2.0 * std::tan(view.vertical / 2.0) / rows;
+      break;
+    case FieldOfView::Shape::kCone: {
+      const double radius = view.horizontal / 2.0;
+      across = std::sqrt(std::numbers::pi * radius * radius / (columns * rows));
+      break;
+    }
+  }
+  return std::max(across, up) * view.max_range;
+}
+
+// What few rays leave unknown looks like something to see, and comes back wherever the robot looks.
+std::string by_holes(const ExploreSetup& setup) {
+  constexpr double kFar = 2.0;  // [voxels]
+  std::string text;
+  for (const planner::RobotDescription& robot : setup.head.robots)
+    if (const double apart = between_rays(robot); apart > kFar * setup.head.resolution)
+      text += "; the rays of " + robot.robot.name + " are " + fixed(apart, 2) +
+              " m apart at its range, and leave holes between them in voxels of " +
+              rounded(setup.head.resolution) + " m (range_m, columns, rows, --resolution)";
+  return text;
+}
+
 std::string by_stray_returns(const ExploreSetup& setup) {
   if (setup.errors.stray == 0.0) return "";
   return "; stray returns (--stray " + rounded(setup.errors.stray) +
@@ -126,7 +162,8 @@ std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& 
                        (all_failed(numbers) ? ": all robots have failed"
                         : unseen            ? why_unseen(*unseen)
                                             : "") +
-                       why_they_rest(setup, numbers) + (all_failed(numbers) ? "" : by_stray_returns(setup)));
+                       why_they_rest(setup, numbers) +
+                       (all_failed(numbers) ? "" : by_holes(setup) + by_stray_returns(setup)));
   if (unseen && unseen->narrow >= sim::kMuchUnseen && !all_failed(numbers))
     warnings.push_back(why_narrow(*unseen, setup));
   for (std::size_t r = 0; r < numbers.robots.size(); ++r) {
