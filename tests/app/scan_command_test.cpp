@@ -23,9 +23,9 @@ TEST_F(ScanCommand, MapsARoomTwiceTheSame) {
     return std::vector<std::string>{"room",      "--sweep", "5",  "--noise",  "0.01",
                                     "--dropout", "0.1",     "-o", map(output)};
   };
-  expect_answer(words("a.ot"),
-                {"world        room\n", "scans        ", "free         ", "occupied     ", "unknown      ",
-                 "% of the observable space", "ugv          starts at", "uav          starts at"});
+  expect_answer(words("a.ot"), {"world        room\n", "scans        ", "free         ", "occupied     ",
+                                "unknown      ", "% of the observable space", "right        ",
+                                "ugv          starts at", "uav          starts at"});
   expect_answer(words("b.ot"));
   EXPECT_TRUE(content_of(map("a.ot")) == content_of(map("b.ot")));
   EXPECT_EQ(std::get<std::shared_ptr<octomap::OcTree>>(read_octree(map("a.ot")))->getResolution(), 0.3);

@@ -1,3 +1,4 @@
+#include "accuracy_text.hpp"
 #include "bad_input.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
@@ -150,6 +151,7 @@ void print_summary(const Options& options, const SourcedWorld& sourced, const Gr
          row("unknown", std::to_string(coverage.bounding - coverage.known_bounding) + " voxels") +
          row("mapped", percent(coverage.of_observable(), 2) + " of the observable space, " +
                            percent(coverage.of_bounding(), 2) + " of the world's box") +
+         row("right", accuracy_text(sim::measure_accuracy(truth, mapping.grid()))) +
          row("time", fixed(seconds, 2) + " s");
   std::cout << out;
 }

@@ -1,5 +1,6 @@
 #include "explore/run_display.hpp"
 
+#include "accuracy_text.hpp"
 #include "explore/explore_run.hpp"
 #include "explore/run_warnings.hpp"
 #include "setup/explore_setup.hpp"
@@ -135,9 +136,7 @@ void RunDisplay::print_summary(const RunResult& result, const std::optional<RunE
            ? row("outside", percent(setup_.sourced.out_of_bounds) +
                                 " of the world's surface: it is out of bounds (box_m), and not explored")
            : "") +
-      row("map", percent(accuracy.surface_part()) + " of the surface voxels occupied, " +
-                     percent(accuracy.false_free_part()) + " of the free ones hold a surface, " +
-                     percent(accuracy.false_occupied_part()) + " of the occupied ones are in free space") +
+      row("map", accuracy_text(accuracy)) +
       row("clock", times + fixed(numbers.mapped.back().time, 1) + " s to the end");
   for (std::size_t r = 0; r < setup_.head.robots.size(); ++r) {
     const RobotNumbers& robot = numbers.robots[r];

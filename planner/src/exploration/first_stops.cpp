@@ -15,8 +15,9 @@ namespace frontlux::planner::detail {
 namespace {
 
 // Why what is left is in no tour.
-// @param gain  [frontiers] that a robot sees at least from a stop
-std::string describe(const TourPlanning::Left& left, double gain) {
+// @param gain      [frontiers] that a robot sees at least from a stop
+// @param given_up  frontiers
+std::string describe(const TourPlanning::Left& left, double gain, std::size_t given_up) {
   std::string text;
   const auto add = [&](std::size_t count, const std::string& where) {
     if (count > 0)
@@ -25,6 +26,7 @@ std::string describe(const TourPlanning::Left& left, double gain) {
   add(left.small, " in clusters of fewer than " + std::to_string(left.enough));
   add(left.unseen, " in clusters of which no robot sees " +
                        std::to_string(static_cast<int>(std::ceil(gain))) + " from where it can get to");
+  add(given_up, " given up");
   return text;
 }
 
@@ -87,7 +89,7 @@ Goal ExplorationState::first_stop(std::size_t robot) const {
     goal.state = GoalState::kNothingAssigned;
     goal.reason = std::string("no goal: there is nothing to see for it") +
                   (options.team.size() > 1 ? " that is not another robot's" : "") +
-                  describe(tours->left(), tours->least_gain(robot));
+                  describe(tours->left(), tours->least_gain(robot), frontiers.keys().size() - wanted.size());
     return goal;
   }
   const TourStop& first = tour.front();

@@ -171,11 +171,12 @@ TEST(ContinuousExploration, CountsTheFrontiersThatAreInNoTour) {
   const std::regex parts(
       "no goal: there is nothing to see for it; frontiers that are left: "
       "(\\d+) in clusters of fewer than 17"  // 1.5 m2
-      "(?:, (\\d+) in clusters of which no robot sees 10 from where it can get to)?");
+      "(?:, (\\d+) in clusters of which no robot sees 10 from where it can get to)?(?:, (\\d+) given up)?");
   std::smatch part;
   ASSERT_TRUE(std::regex_match(said, part, parts)) << said;
   const std::size_t unseen = part[2].matched ? std::stoul(part[2]) : 0;
   EXPECT_EQ(std::stoul(part[1]) + unseen, last.unassigned) << said;
+  EXPECT_EQ(part[3].matched ? std::stoul(part[3]) : 0, last.abandoned) << said;
 }
 
 // A robot that keeps its goal weighs none.

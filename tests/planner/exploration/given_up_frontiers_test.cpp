@@ -57,6 +57,46 @@ TEST_P(GivenUpFrontiersBy, AreThoseThatItDoesNotSeeFromItsGoal) {
   }
 }
 
+// In a hall that it knows something is beside the robot whenever it has come some way, and gone once it has
+// turned back.
+TEST(GivenUpFrontiers, AreThoseOnTheWayToWhichTheMapClosesAgainAndAgain) {
+  TeamInWorld team("room", 1, {small_uav()});
+  const VoxelKey home = team.truth.lattice().key(team.starts[0].pose.position).value();
+  team.starts[0].known_free.clear();
+  for_each_key(intersection(grown({home, home}, 9, 9, 3), team.truth.bounds()).value(),
+               [&](const VoxelKey& key) { team.starts[0].known_free.push_back(key); });
+  ContinuousExploration exploration(TeamInMotion::options(team, GoalChoice::kTours), team.empty_map());
+  exploration.begin(team.starts, 0.0);
+  std::optional<Eigen::Vector3d> closed;
+  Eigen::Vector3d from = team.starts[0].pose.position;
+  const auto scan_towards = [&](const Pose& pose, const Eigen::Vector3d& direction, float range, int times) {
+    Scan ray = scan_with(pose, range, 2.0);
+    ray.directions[0] = direction.normalized().cast<float>();
+    for (int i = 0; i < times; ++i) exploration.insert(0, pose, ray);
+  };
+  std::size_t turns = 0, abandoned = 0;
+  for (double time = 0.0; time < kLong && !exploration.end(); time += 0.1) {
+    const auto [pose, velocity, yaw_rate] = exploration.at(0, time);
+    if (!closed && (pose.position - from).norm() > 0.25 && velocity.norm() > 0.1) {
+      const double latency = exploration.options().latency;
+      closed = exploration.at(0, time + latency).pose.position + Eigen::Vector3d(0.3, -0.3, 0.0);
+      const Eigen::Vector3d offset = *closed - pose.position;
+      scan_towards(pose, offset, static_cast<float>(offset.norm()), 3);
+    } else if (closed && velocity.isZero()) {
+      scan_towards(pose, *closed - pose.position, std::numeric_limits<float>::infinity(), 12);
+      closed.reset();
+      from = pose.position;
+    }
+    while (const auto now = exploration.plan(time)) {
+      const bool was_closed = now->reason == PlanReason::kBlocked;
+      turns += was_closed && now->step.robots[0].goal.state == GoalState::kNoCorridor ? 1 : 0;
+      abandoned = now->step.abandoned;
+    }
+  }
+  EXPECT_GT(turns, 20U);
+  EXPECT_GT(abandoned, 200U) << "it goes back and forth";
+}
+
 // Each robot gives up what it has not seen, also if both plan at the same times.
 TEST_P(GivenUpFrontiersBy, AreThoseThatEitherRobotDoesNotSee) {
   const TeamInWorld team("room", 1, {small_uav(), small_uav()});

@@ -76,6 +76,25 @@ TEST(AbandonedFrontiers, AreAbandonedAfterSomeVisits) {
   }
 }
 
+TEST(AbandonedFrontiers, AreAbandonedAfterRobotsHaveTurnedBackFiveTimes) {
+  detail::AbandonedFrontiers abandoned(1);
+  const std::vector<VoxelKey> all = {{1, 7, 9}, {2, 7, 9}, {3, 7, 9}};
+  const std::vector<VoxelKey> some = {all[0], all[2]};
+  for (int times = 0; times < 4; ++times) abandoned.turned_back(some);
+  EXPECT_EQ(abandoned.without_abandoned(all), all);
+  abandoned.visited(std::vector{all[2]});
+  EXPECT_EQ(abandoned.without_abandoned(all), (std::vector{all[0], all[1]}));
+  abandoned.turned_back(some);
+  EXPECT_EQ(abandoned.without_abandoned(all), std::vector{all[1]});
+  abandoned.turned_back(some);
+  VoxelGrid grid(0.1);
+  for (const VoxelKey& key : some) grid.set(key, Occupancy::kFree);
+  abandoned.forget_known(all, grid);
+  EXPECT_EQ(abandoned.without_abandoned(all), all);
+  for (int times = 0; times < 4; ++times) abandoned.turned_back(some);
+  EXPECT_EQ(abandoned.without_abandoned(all), all) << "as if for the first time";
+}
+
 TEST(AbandonedFrontiers, AreForgottenOnceTheyAreKnown) {
   detail::AbandonedFrontiers abandoned(2);
   const std::vector<VoxelKey> all = {{1, 7, 9}, {2, 7, 9}, {3, 7, 9}};
