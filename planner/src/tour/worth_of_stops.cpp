@@ -48,13 +48,13 @@ bool TourPlanning::nobody_sees_any() const {
 FrontierClusters::Exceptions TourPlanning::openings(const VoxelGrid& grid) const {
   constexpr double kLeastArea = 0.5;  // [m2]
   constexpr double kFewest = 15;      // [frontiers]
-  constexpr double kWide = 0.9;       // [m]
-  constexpr double kDepth = 1.5;      // [m] up to which it begins
+  constexpr double kWide = 1.5;       // [m]
+  constexpr double kWall = 0.4;       // [m] behind which it begins at once
   if (!looks_closer()) return {};
   const double edge = lattice_.resolution();
   const double least = std::max(kFewest, kLeastArea / (edge * edge) - 1e-6);
   const int half = std::max(1, static_cast<int>(kWide / 2 / edge + 1e-6));
-  const int steps = static_cast<int>(std::lround(kDepth / edge));
+  const int steps = half + static_cast<int>(std::lround(kWall / edge));
   return [this, &grid, least, half, steps](std::span<const VoxelKey> frontiers) {
     return static_cast<double>(frontiers.size()) >= least &&
            lead_to_space(grid, bounds_, frontiers, half, steps);

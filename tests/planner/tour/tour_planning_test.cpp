@@ -466,8 +466,8 @@ TEST(TourPlanning, LeadsThroughNarrowDoorsAtTheEnd) {
   EXPECT_EQ(Opening(4, 4, 10).stops(), 1U) << "0.64 m2, 16";
   EXPECT_EQ(Opening(3, 4, 10).stops(), 0U) << "0.48 m2, 12";
   EXPECT_EQ(Opening(3, 10, 1).stops(), 0U) << "a niche";
-  EXPECT_EQ(Opening(3, 10, 5).stops(), 0U) << "a crack in a wall that is hollow, 0.8 m";
-  EXPECT_EQ(Opening(3, 10, 6).stops(), 1U) << "a wardrobe, 1.0 m";
+  EXPECT_EQ(Opening(3, 10, 7).stops(), 0U) << "a crack in a wall that is hollow, 1.2 m";
+  EXPECT_EQ(Opening(3, 10, 8).stops(), 1U) << "a closet, 1.4 m";
 }
 
 // One robot sees nothing, and another one can get nowhere: that smaller clusters are worth a stop from now on
