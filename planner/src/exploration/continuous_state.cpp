@@ -216,7 +216,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
 
   const bool rested = rests_without_goal(member);
   member.others_rest = false;
-  if (member.blocked && !member.meets_other && step.robots[robot].goal.state == GoalState::kNoCorridor)
+  if (member.blocked && step.robots[robot].goal.state == GoalState::kNoCorridor)
     team.abandoned.turned_back(member.goal_frontiers);
   Trajectory trajectory = find_trajectory(robot, start, step);
   member.goal = step.robots[robot].goal;
