@@ -24,8 +24,8 @@ namespace frontlux::app {
                                           std::span<const planner::RobotDescription> robots);
 
 /// What a reader of a run's numbers must know first: that a robot was cut off, that the run ended by itself
-/// far from done, that much is where only other robots see it, that a robot failed, or that plannings took
-/// longer than the clock charges robots in motion for them.
+/// far from done, that much is where only other robots see it, that a robot started far from where it was
+/// asked to or failed, or that plannings took longer than the clock charges robots in motion for them.
 /// @param end     none: its user has stopped it
 /// @param unseen  why the rest was not seen, if that is known
 [[nodiscard]] std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& sums,
